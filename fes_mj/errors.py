@@ -1,0 +1,17 @@
+"""The two ways a request can be refused; the command line turns each into one message and an exit code."""
+
+
+class InputError(ValueError):
+    """Something the user gave cannot be used (exit code 2). The message names it and what is allowed."""
+
+
+class AssemblyError(InputError):
+    """A linkage whose links cannot close over the whole turn of the crank."""
+
+
+class MissingPartError(RuntimeError):
+    """A needed part of the installation is absent (exit code 3). The message says how to install it."""
+
+
+class UnstableError(RuntimeError):
+    """A simulation that broke down (exit code 1)."""

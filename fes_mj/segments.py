@@ -1,0 +1,89 @@
+"""Mass, centre of mass and inertia of every moving body, each in its own frame (origin, x axis to the tip)."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from fes_mj.design import Design
+
+GRAVITY = 9.81  # m/s^2, along -y
+
+
+class Segment(NamedTuple):
+    """Fractions of de Leva (1996): of body mass; CoM from the proximal end and radius of gyration, of the length."""
+
+    mass: float
+    centre: float
+    gyration: float
+
+
+class Inertia(NamedTuple):
+    """Mass in kg; centre of mass in the body's frame, m, complex; moment of inertia about it (normal axis), kg m^2."""
+
+    mass: float
+    centre: complex
+    moment: float
+
+
+# de Leva, J. Biomech. 29 (1996) 1223-1230, Table 4 (transverse radius of gyration; foot from heel to toe tip).
+DE_LEVA = {
+    "male": {
+        "thigh": Segment(0.1416, 0.4095, 0.329),
+        "shank": Segment(0.0433, 0.4395, 0.246),
+        "foot": Segment(0.0137, 0.4415, 0.245),
+    },
+    "female": {
+        "thigh": Segment(0.1478, 0.3612, 0.364),
+        "shank": Segment(0.0481, 0.4352, 0.263),
+        "foot": Segment(0.0129, 0.4014, 0.279),
+    },
+}
+# de Leva's mean foot lengths, m; the rider's own is not asked for.
+FOOT_LENGTH = {"male": 0.2581, "female": 0.2283}
+# Assumption: the ankle axis lies a quarter of the foot's length ahead of the heel.
+ANKLE_FROM_HEEL = 0.25
+# Assumption: links are slender bars of aluminium profile (about 25 x 15 mm), kg/m.
+LINK_MASS_PER_LENGTH = 1.0
+
+
+def inertias(design: Design) -> dict[str, Inertia]:
+    """Inertia by body name; the shank carries the foot in its boot, the pedal's carrier its pedal arm."""
+    rider, linkage = design.rider, design.linkage
+    table = DE_LEVA[rider.sex]
+    bodies = {"thigh": _segment(table["thigh"], rider.mass, rider.thigh, 0, 1)}
+    to_ankle = np.exp(1j * design.boot_angle)
+    sole = -1j * to_ankle  # the boot holds the foot at 90 deg to the shank, toes towards the pedal
+    foot_length = FOOT_LENGTH[rider.sex]
+    heel = rider.shank * to_ankle - ANKLE_FROM_HEEL * foot_length * sole
+    bodies["shank"] = combine(
+        _segment(table["shank"], rider.mass, rider.shank, 0, to_ankle),
+        _segment(table["foot"], rider.mass, foot_length, heel, sole),
+    )
+    for body in linkage.architecture.bodies[2:]:
+        length = design.link_lengths[body]
+        bodies[body] = _bar(0, length)
+        if body == linkage.architecture.pedal_body and body != "crank":
+            joint = 0 if body == "coupler" else length  # the rocker joint in this body's frame
+            bodies[body] = combine(bodies[body], _bar(joint, length * linkage.pedal_offset))
+    return bodies
+
+
+def _segment(segment: Segment, body_mass: float, length: float, start: complex, along: complex) -> Inertia:
+    mass = segment.mass * body_mass
+    return Inertia(mass, complex(start + segment.centre * length * along), mass * (segment.gyration * length) ** 2)
+
+
+def _bar(start: complex, end: complex) -> Inertia:
+    length = abs(end - start)
+    mass = LINK_MASS_PER_LENGTH * length
+    return Inertia(mass, complex((start + end) / 2), mass * length**2 / 12)
+
+
+def combine(*parts: Inertia) -> Inertia:
+    """One rigid body out of several (parallel-axis theorem)."""
+    mass = sum(part.mass for part in parts)
+    centre = sum(part.mass * part.centre for part in parts) / mass
+    moment = sum(part.moment + part.mass * abs(part.centre - centre) ** 2 for part in parts)
+    return Inertia(mass, complex(centre), float(moment))

@@ -1,0 +1,209 @@
+"""The headless run: joint moments fed back from the state, a servo on the crank, power measured on its load side."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from fes_mj.design import Design
+from fes_mj.errors import UnstableError
+from fes_mj.mjcf import LEGS, Leg, build_mjcf, steps_per_turn
+from fes_mj.segments import GRAVITY
+from fes_mj.torque import JOINTS, JointMoments, TorqueMap
+
+# An exact pose with exact velocities still rings for some six steps, while the stiff loops find their forces.
+PRE_ROLL = 20  # steps
+
+
+@dataclass(frozen=True)
+class Energy:
+    """Energy balance of the measured turns, J: joint_work = crank_work + kinetic + potential + lost."""
+
+    joint_work: float  # by the hip and knee moments
+    crank_work: float  # on the load
+    kinetic: float  # change
+    potential: float  # change
+
+    @property
+    def lost(self) -> float:
+        """What went into the constraints and the integrator."""
+        return self.joint_work - self.crank_work - self.kinetic - self.potential
+
+
+@dataclass(frozen=True)
+class Simulation:
+    """Whole measured turns; arrays have shape (steps,), sampled at the start of each step.
+
+    Dictionaries are by joint name ("knee", "hip"; with two legs "right_knee" ...), the loop ones by the name of the
+    cut joint ("pedal", "crank_pin"). A loop's force is complex, in the linkage's plane.
+    """
+
+    design: Design
+    moments: JointMoments
+    cadence: float  # rad/s, commanded
+    timestep: float  # s
+    turns: int
+    legs: tuple[Leg, ...]
+    mass_scale: float
+    gravity: float  # m/s^2
+    crank_angle: NDArray[np.float64]  # rad
+    crank_speed: NDArray[np.float64]  # rad/s
+    crank_moment: NDArray[np.float64]  # N m on the load, all legs together
+    joint_angle: dict[str, NDArray[np.float64]]  # rad
+    joint_speed: dict[str, NDArray[np.float64]]  # rad/s
+    joint_moment: dict[str, NDArray[np.float64]]  # N m
+    loop_gap: dict[str, NDArray[np.float64]]  # m
+    loop_force: dict[str, NDArray[np.complex128]]  # N
+    energy: Energy
+
+    @property
+    def power(self) -> NDArray[np.float64]:
+        """Crank power on the load, all legs together, W."""
+        return self.crank_moment * self.crank_speed
+
+    @property
+    def power_mean(self) -> float:
+        """Mean crank power of one leg over the measured turns, W."""
+        return float(self.power.mean()) / len(self.legs)
+
+    @property
+    def loop_gap_max(self) -> float:
+        """Largest distance between the two sides of a cut joint, m."""
+        return max(float(gap.max()) for gap in self.loop_gap.values())
+
+    @property
+    def cadence_ripple(self) -> float:
+        """Largest relative deviation of the crank speed from the cadence."""
+        return float(np.abs(self.crank_speed / self.cadence - 1).max())
+
+
+def simulate(
+    design: Design,
+    moments: JointMoments,
+    *,
+    cadence: float | None = None,
+    timestep: float | None = None,
+    turns: int = 1,
+    legs: int = 1,
+    mass_scale: float = 1.0,
+    gravity: float = GRAVITY,
+) -> Simulation:
+    """Run whole turns of the model of build_mjcf (same arguments) under the torque map of `moments`.
+
+    Raises AssemblyError if the linkage does not close, UnstableError if the integration breaks down.
+    """
+    cadence = design.linkage.cadence if cadence is None else cadence
+    spec = build_mjcf(design, cadence=cadence, timestep=timestep, legs=legs, mass_scale=mass_scale, gravity=gravity)
+    model, steps = spec.compile(), turns * steps_per_turn(cadence, timestep)
+    drives, torque_map = joint_drives(LEGS[legs]), TorqueMap(moments)
+    run = run_steps(model, {name: torque_map.feedback(joint) for name, joint in drives.items()}, steps)
+
+    column = {model.sensor(i).name: int(model.sensor(i).adr[0]) for i in range(model.nsensor)}
+    rows, loops = run.sensors[:steps], [model.equality(i).name for i in range(model.neq)]
+    angle = {name: rows[:, column[f"{name}_angle"]] for name in drives}
+    speed = {name: run.sensors[:, column[f"{name}_speed"]] for name in ("crank", *drives)}
+    moment = {name: torque_map.moment(joint, angle[name], speed[name][:steps]) for name, joint in drives.items()}
+    # the frame brakes the crank with this moment about +y, against its turning about -y
+    crank_moment = rows[:, column["crank_torque"] + 1]
+
+    def work(of: NDArray[np.float64], at: NDArray[np.float64]) -> float:
+        """A moment that is held over each step, times the angle of the step."""
+        return float(of @ (at[:-1] + at[1:])) / 2 * model.opt.timestep
+
+    return Simulation(
+        design=design,
+        moments=moments,
+        cadence=cadence,
+        timestep=model.opt.timestep,
+        turns=turns,
+        legs=LEGS[legs],
+        mass_scale=mass_scale,
+        gravity=gravity,
+        crank_angle=rows[:, column["crank_angle"]],
+        crank_speed=speed["crank"][:steps],
+        crank_moment=crank_moment,
+        joint_angle=angle,
+        joint_speed={name: speed[name][:steps] for name in drives},
+        joint_moment=moment,
+        loop_gap={loop: np.linalg.norm(rows[:, (at := column[f"{loop}_gap"]) : at + 3], axis=1) for loop in loops},
+        loop_force={loop: run.forces[:, 3 * i] + 1j * run.forces[:, 3 * i + 2] for i, loop in enumerate(loops)},
+        energy=Energy(
+            joint_work=sum(work(moment[name], speed[name]) for name in drives),
+            crank_work=work(crank_moment, speed["crank"]),
+            kinetic=run.end_energy[1] - run.start_energy[1],
+            potential=run.end_energy[0] - run.start_energy[0],
+        ),
+    )
+
+
+def joint_drives(legs: tuple[Leg, ...]) -> dict[str, str]:
+    """Name of each driven joint in the model -> "knee" or "hip"."""
+    return {leg.prefix + joint: joint for leg in legs for joint in JOINTS}
+
+
+class Run(NamedTuple):
+    """Records of a run: sensor rows of all steps and one more, constraint forces (steps, rows), energies (J)."""
+
+    sensors: NDArray[np.float64]
+    forces: NDArray[np.float64]
+    start_energy: tuple[float, float]  # potential, kinetic
+    end_energy: tuple[float, float]
+
+
+def run_steps(model: mujoco.MjModel, feedback: dict[str, Callable[[float, float], float]], steps: int) -> Run:
+    """Step the model from its keyframe; `feedback` maps a joint's angle and speed to the motor of the same name."""
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    # plain floats through memory views and rows as bytes cost half of numpy scalars and row assignment
+    qpos, qvel = memoryview(data.qpos), memoryview(data.qvel)
+    ctrl: Any = memoryview(data.ctrl)
+    drives = [
+        (int(model.actuator(name).id), int(model.joint(name).qposadr[0]), int(model.joint(name).dofadr[0]), moment)
+        for name, moment in feedback.items()
+    ]
+
+    def advance(count: int) -> Run:
+        start, step, read = _energy(model, data), mujoco.mj_step, data.sensordata.tobytes
+        sensors, forces = [], []
+        for _ in range(count):
+            for actuator, position, speed, moment in drives:
+                ctrl[actuator] = moment(qpos[position], qvel[speed])
+            step(model, data)
+            sensors.append(read())
+            forces.append(data.efc_force.tobytes())
+        if any(warning.number for warning in data.warning):
+            raise UnstableError(
+                f"{model.names[: model.names.index(0)].decode()}: the simulation became unstable "
+                f"with a time step of {1e3 * model.opt.timestep:.3g} ms; give a smaller --timestep"
+            )
+        end = _energy(model, data)
+        mujoco.mj_forward(model, data)
+        sensors.append(read())
+        return Run(_matrix(sensors), _matrix(forces), start, end)
+
+    previous = mujoco.get_mju_user_warning()
+    mujoco.set_mju_user_warning(lambda _: None)  # MuJoCo would write MUJOCO_LOG.TXT into the user's folder
+    try:
+        advance(PRE_ROLL)
+        return advance(steps)
+    finally:
+        mujoco.set_mju_user_warning(previous)
+
+
+def _matrix(rows: list[bytes]) -> NDArray[np.float64]:
+    return np.frombuffer(b"".join(rows), np.float64).reshape(len(rows), -1)
+
+
+def _energy(model: mujoco.MjModel, data: mujoco.MjData) -> tuple[float, float]:
+    """Potential and kinetic energy of the current state, J; the state itself is left alone."""
+    probe = mujoco.MjData(model)
+    probe.qpos, probe.qvel = data.qpos, data.qvel
+    mujoco.mj_forward(model, probe)
+    mujoco.mj_energyPos(model, probe)
+    mujoco.mj_energyVel(model, probe)
+    return float(probe.energy[0]), float(probe.energy[1])
