@@ -107,5 +107,21 @@ def reference_power(simulation: Simulation, mass_scale: float | None = None) -> 
     return cadence * np.sum([*legs], axis=0)
 
 
+def cycle_csv(result: CrossCheck) -> str:
+    """The measured turns as CSV, a row a time step."""
+    run = result.simulation
+    columns = {
+        "crank_angle_deg": np.degrees(run.crank_angle),
+        "crank_power_W": run.power,
+        "inverse_dynamics_power_W": reference_power(run),
+        "quasi_static_power_W": reference_power(run, 0.0),
+        **{f"{name}_deg": np.degrees(angle) for name, angle in run.joint_angle.items()},
+        **{f"{name}_Nm": moment for name, moment in run.joint_moment.items()},
+        **{f"{name}_gap_m": gap for name, gap in run.loop_gap.items()},
+    }
+    lines = [",".join(f"{value:.9g}" for value in row) for row in np.column_stack([*columns.values()]).tolist()]
+    return "\n".join([",".join(columns), *lines]) + "\n"
+
+
 def _rms_per_leg(simulation: Simulation, reference: NDArray[np.float64]) -> float:
     return float(np.sqrt(np.mean((simulation.power - reference) ** 2))) / len(simulation.legs)

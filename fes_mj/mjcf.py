@@ -28,7 +28,6 @@ LOOP_SOLIMP = (0.9999, 0.9999, 0.001, 0.5, 2.0)
 
 # Joints that are cut and closed again by a constraint: passive pins without drive, limit or friction.
 CUTS = ("pedal", "crank_pin")
-NORMAL = (0.0, -1.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -61,17 +60,18 @@ def build_mjcf(
     legs: int = 1,
     mass_scale: float = 1.0,
     gravity: float = GRAVITY,
+    variant: str = "sites",
 ) -> mujoco.MjSpec:
-    """The model of a design at a cadence (rad/s, by default Eq. 16), with a keyframe at crank angle 0.
+    """The model of a design at a cadence (rad/s, by default Eq. 16), assembled, with a keyframe at crank angle 0.
 
     timestep: s; rounded so that a turn is a whole number of steps. mass_scale: factor on every mass and inertia.
-    Raises AssemblyError if the linkage does not close over the whole turn.
+    variant: loops anchored at "sites" or on "bodies". Raises AssemblyError if the linkage does not close.
     """
     kinematics.require_assembly(design)
     cadence = design.linkage.cadence if cadence is None else cadence
     spec = mujoco.MjSpec()
     spec.modelname = design.name
-    spec.comment = f"{design.linkage.architecture.title}: {design.name}, {math.degrees(cadence) / 6:.2f} rpm"
+    spec.comment = f"{design.linkage.architecture.title}: {design.name}, {cadence * 30 / math.pi:.2f} rpm"
     # as authored and at full precision: the default output has six digits, half a micrometre of loop error
     spec.compiler.savecompiled = spec.compiler.savecanonical = False
     spec.compiler.degree = False
@@ -81,11 +81,26 @@ def build_mjcf(
     masses["crank"] = combine(*(_turned(masses["crank"], -leg.lag) for leg in LEGS[legs]))
     crank = _add_body(root, "crank", _position(design.linkage.crank_centre), masses["crank"])
     crank.add_site(name="crank_torque")
+    state = {"crank": (0.0, cadence)}
     for leg in LEGS[legs]:
-        _add_leg(spec, root, design, leg, masses)
+        start = _start_state(design, leg, cadence)
+        _add_leg(spec, root, design, leg, masses, start, variant)
+        state |= {leg.prefix + joint: values for joint, values in start.items()}
     _add_drives(spec, LEGS[legs])
-    _add_keyframe(spec, design, cadence, LEGS[legs])
+    _add_keyframe(spec, state)
     return spec
+
+
+def _start_state(design: Design, leg: Leg, cadence: float) -> dict[str, tuple[float, float]]:
+    """Angle (rad) and speed (rad/s) of every joint of a leg but the crank, at crank angle 0."""
+    motion = kinematics.solve(design, np.array([-leg.lag]))
+    joints = {"hip": (motion.hip_angle, motion.hip_rate), "knee": (motion.knee_angle, motion.knee_rate)}
+    if "rocker" in motion.turning:
+        rocker, coupler = motion.direction("rocker"), motion.direction("coupler")
+        turning = motion.turning["rocker"][0]
+        joints["rocker"] = (np.angle(rocker), turning)
+        joints["coupler"] = (np.angle(coupler / rocker), motion.turning["coupler"][0] - turning)
+    return {joint: (float(angle[0]), cadence * float(rate[0])) for joint, (angle, rate) in joints.items()}
 
 
 def _scaled(inertia: Inertia, scale: float) -> Inertia:
@@ -117,67 +132,78 @@ def _add_body(
     inertia: Inertia,
     *,
     joint: str = "",
+    angle: float = 0.0,
     turned: float = 0.0,
-    axis: tuple[float, float, float] = NORMAL,
+    sense: int = 1,
 ) -> Any:
-    """A body with one hinge at its origin, `turned` (rad, counter-clockwise) against its parent at joint angle 0."""
-    body = parent.add_body(name=name, pos=pos, quat=(math.cos(turned / 2), 0, -math.sin(turned / 2), 0))
+    """A body with one hinge at its origin, posed at the joint's start angle (rad), which is also its reference.
+
+    turned: counter-clockwise from the parent at joint angle 0, rad. sense: -1 if the angle grows clockwise.
+    """
+    pose = turned + sense * angle
+    body = parent.add_body(name=name, pos=pos, quat=(math.cos(pose / 2), 0, -math.sin(pose / 2), 0))
     # only the moment about the plane's normal matters; equal ones satisfy the triangle inequality
     body.mass, body.ipos, body.inertia = inertia.mass, _position(inertia.centre), [inertia.moment] * 3
     body.explicitinertial = True
-    body.add_joint(name=joint or name, type=mujoco.mjtJoint.mjJNT_HINGE, axis=axis)
+    body.add_joint(name=joint or name, type=mujoco.mjtJoint.mjJNT_HINGE, axis=(0, -sense, 0), ref=angle)
     return body
 
 
-def _add_leg(spec: mujoco.MjSpec, root: Any, design: Design, leg: Leg, masses: dict[str, Inertia]) -> None:
-    """Thigh and shank, rocker and coupler of one leg."""
+def _add_leg(
+    spec: mujoco.MjSpec,
+    root: Any,
+    design: Design,
+    leg: Leg,
+    masses: dict[str, Inertia],
+    start: dict[str, tuple[float, float]],
+    variant: str,
+) -> None:
+    """Thigh and shank, rocker and coupler of one leg, its loops closed."""
     linkage, prefix = design.linkage, leg.prefix
-    hip = _position(0j, leg.lateral)
-    thigh = _add_body(
-        root, prefix + "thigh", hip, masses["thigh"], joint=prefix + "hip", turned=float(linkage.seat_angle)
-    )
-    # extension turns the shank clockwise: the knee's axis is reversed, so that its angle grows with it
-    straight = math.pi - float(design.boot_angle)
-    knee = (design.rider.thigh, 0, 0)
-    _add_body(thigh, prefix + "shank", knee, masses["shank"], joint=prefix + "knee", turned=straight, axis=(0, 1, 0))
+    angle = {joint: values[0] for joint, values in start.items()}
+
+    def add(parent: Any, body: str, pos: tuple[float, float, float], joint: str, **pose: Any) -> Any:
+        return _add_body(parent, prefix + body, pos, masses[body], joint=prefix + joint, angle=angle[joint], **pose)
+
+    thigh = add(root, "thigh", _position(0j, leg.lateral), "hip", turned=linkage.seat_angle)
+    # extension turns the shank clockwise; at knee angle 0 it would lie folded along the thigh
+    add(thigh, "shank", (design.rider.thigh, 0, 0), "knee", turned=math.pi - float(design.boot_angle), sense=-1)
     if "rocker" in masses:
-        pivot = _position(linkage.ground, leg.lateral)
-        rocker = _add_body(root, prefix + "rocker", pivot, masses["rocker"])
-        _add_body(rocker, prefix + "coupler", (linkage.rocker, 0, 0), masses["coupler"])
+        rocker = add(root, "rocker", _position(linkage.ground, leg.lateral), "rocker")
+        add(rocker, "coupler", (linkage.rocker, 0, 0), "coupler")
     for cut in CUTS:
         if cut in linkage.architecture.joints:
-            _close_loop(spec, design, leg, cut)
+            _close_loop(spec, design, leg, cut, variant)
 
 
-def _close_loop(spec: mujoco.MjSpec, design: Design, leg: Leg, cut: str) -> None:
-    """Two sites at a cut joint, one on each of its bodies, and the constraint that holds them together."""
-    architecture, sites = design.linkage.architecture, []
+def _close_loop(spec: mujoco.MjSpec, design: Design, leg: Leg, cut: str, variant: str) -> None:
+    """Two sites at a cut joint, one on each of its bodies, the constraint between them and a sensor of the gap."""
+    architecture, owners, sites = design.linkage.architecture, [], []
     for body in architecture.joints[cut]:
         carrier = cut == "pedal" and body == architecture.pedal_body
         point = design.link_lengths[body] * (design.linkage.pedal_offset if carrier else 1.0)
-        if body == "crank":
+        if body == "crank":  # shared by the legs: theirs are two arms of it, in two planes
             owner, pos = "crank", _position(point * np.exp(-1j * leg.lag), leg.lateral)
         else:
             owner, pos = leg.prefix + body, _position(point)
-        sites.append(f"{leg.prefix}{body}_{cut}")
-        spec.body(owner).add_site(name=sites[-1], pos=pos)
-    spec.add_equality(
-        name=leg.prefix + cut,
-        type=mujoco.mjtEq.mjEQ_CONNECT,
-        objtype=mujoco.mjtObj.mjOBJ_SITE,
-        name1=sites[0],
-        name2=sites[1],
-        solref=LOOP_SOLREF,
-        solimp=LOOP_SOLIMP,
-    )
+        owners.append(owner)
+        sites.append(spec.body(owner).add_site(name=f"{leg.prefix}{body}_{cut}", pos=pos))
+    equality = spec.add_equality(name=leg.prefix + cut, type=mujoco.mjtEq.mjEQ_CONNECT)
+    equality.solref, equality.solimp = LOOP_SOLREF, LOOP_SOLIMP
+    if variant == "bodies":
+        # the second anchor follows from the pose in the file, which is assembled
+        equality.objtype, equality.name1, equality.name2 = mujoco.mjtObj.mjOBJ_BODY, *owners
+        equality.data[:3] = sites[0].pos
+    else:
+        equality.objtype, equality.name1, equality.name2 = mujoco.mjtObj.mjOBJ_SITE, sites[0].name, sites[1].name
     # the loop gap, m
     spec.add_sensor(
         name=f"{leg.prefix}{cut}_gap",
         type=mujoco.mjtSensor.mjSENS_FRAMEPOS,
         objtype=mujoco.mjtObj.mjOBJ_SITE,
-        objname=sites[0],
+        objname=sites[0].name,
         reftype=mujoco.mjtObj.mjOBJ_SITE,
-        refname=sites[1],
+        refname=sites[1].name,
     )
 
 
@@ -204,23 +230,19 @@ def _add_drives(spec: mujoco.MjSpec, legs: tuple[Leg, ...]) -> None:
             spec.add_sensor(name=f"{joint}_{quantity}", type=kind, objtype=mujoco.mjtObj.mjOBJ_JOINT, objname=joint)
 
 
-def _add_keyframe(spec: mujoco.MjSpec, design: Design, cadence: float, legs: tuple[Leg, ...]) -> None:
+def _add_keyframe(spec: mujoco.MjSpec, state: dict[str, tuple[float, float]]) -> None:
     """Exact position and velocity at crank angle 0, the servo at its cadence and the joint motors idle."""
-    state = {"crank": (0.0, cadence)}
-    for leg in legs:
-        motion = kinematics.solve(design, np.array([-leg.lag]))
-        angles = {"hip": (motion.hip_angle, motion.hip_rate), "knee": (motion.knee_angle, motion.knee_rate)}
-        if "rocker" in motion.turning:
-            rocker, coupler = motion.direction("rocker"), motion.direction("coupler")
-            turning = motion.turning["rocker"][0]
-            angles["rocker"] = (np.angle(rocker), turning)
-            angles["coupler"] = (np.angle(coupler / rocker), motion.turning["coupler"][0] - turning)
-        for joint, (angle, rate) in angles.items():
-            state[leg.prefix + joint] = (float(angle[0]), cadence * float(rate[0]))
     model = spec.compile()
     qpos, qvel, ctrl = np.zeros(model.nq), np.zeros(model.nv), np.zeros(model.nu)
-    for joint, (angle, rate) in state.items():
+    for joint, (angle, speed) in state.items():
         address = model.joint(joint).qposadr[0]
-        qpos[address], qvel[address] = angle, rate
-    ctrl[model.actuator("crank_servo").id] = cadence
+        qpos[address], qvel[address] = angle, speed
+    ctrl[model.actuator("crank_servo").id] = state["crank"][1]
     spec.add_key(name="start", qpos=qpos, qvel=qvel, ctrl=ctrl)
+
+
+def mjcf_text(design: Design, **options: Any) -> str:
+    """The model of build_mjcf (same arguments) as MJCF that reloads bit for bit."""
+    spec = build_mjcf(design, **options)
+    spec.compile()
+    return spec.to_xml()

@@ -1,0 +1,53 @@
+"""The command line: what is asked for, what is shown, and which exit code says how it went."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+
+from cyclopts import App, CycloptsError
+
+from fes_mj.cli.output import errors
+from fes_mj.errors import InputError, MissingPartError, UnstableError
+
+AGREES, DISAGREES, BAD_INPUT, MISSING_PART, INTERRUPTED = 0, 1, 2, 3, 130
+
+app = App(
+    name="fes_mj",
+    help="Does a pedalling linkage for FES cycling deliver its power when legs have mass and loops must close?",
+    suppress_keyboard_interrupt=False,
+)
+# The help lines stand here so that `--help` need not import the commands.
+_COMMANDS = {
+    "simulate": "Simulate a design in MuJoCo and compare its crank power with statics.",
+    "static": "Mean crank power of a design by statics, without MuJoCo.",
+    "export": "Write the MJCF model of a design, for other tools.",
+    "view": "Watch a design run in MuJoCo's interactive viewer.",
+}
+for _command, _help in _COMMANDS.items():
+    app.command(f"fes_mj.cli.{_command}:{_command}", name=_command, help=_help)
+
+
+def run(arguments: Sequence[str] | None = None) -> int:
+    """Run one command line and return its exit code; every expected failure becomes one message on standard error."""
+    try:
+        code = app(arguments, exit_on_error=False, print_error=False, result_action="return_value")
+        return code if isinstance(code, int) else AGREES
+    except (CycloptsError, InputError) as error:
+        return _fail(error, BAD_INPUT)
+    except MissingPartError as error:
+        return _fail(error, MISSING_PART)
+    except UnstableError as error:
+        return _fail(error, DISAGREES)
+    except KeyboardInterrupt:
+        return _fail("interrupted; nothing was left half-written", INTERRUPTED)
+
+
+def _fail(message: object, code: int) -> int:
+    errors.print(f"fes_mj: {message}", markup=False, highlight=False, soft_wrap=True)
+    return code
+
+
+def main() -> None:
+    """Entry point of the fes_mj command."""
+    sys.exit(run())

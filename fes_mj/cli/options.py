@@ -1,0 +1,74 @@
+"""Options that several commands share, and what they load."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Literal, NamedTuple
+
+from cyclopts import Parameter
+
+from fes_mj.design import Design
+from fes_mj.design_file import load_design
+from fes_mj.errors import InputError
+from fes_mj.torque import JointMoments, load_moments
+
+HIGHEST_CADENCE = 300.0  # rpm, twice what sprinters reach
+
+
+class Loaded(NamedTuple):
+    """What the options of a run name: a design, the joint moments, the cadence in rad/s."""
+
+    design: Design
+    moments: JointMoments
+    cadence: float
+
+
+@Parameter(name="*")
+@dataclass
+class RunOptions:
+    """Options of every command that needs joint moments.
+
+    Parameters
+    ----------
+    group
+        Rider group whose recovered joint moments are used (default p1p2).
+    moments
+        Your own joint moments instead: a CSV with the header crank_angle_deg,knee_Nm,hip_Nm.
+    cadence
+        Crank speed in rpm; by default the one at which the tricycle does 5.71 km/h.
+    dims
+        Dimensions of a catalogued design: as identified, or as the paper prints them.
+    json
+        Print one JSON object and nothing else.
+    quiet
+        Print nothing but errors.
+    verbose
+        Print more: energies and joint forces.
+    """
+
+    group: Literal["p1p2", "p1p3"] | None = None
+    moments: Path | None = None
+    cadence: float | None = None
+    dims: Literal["identified", "printed"] = "identified"
+    json: Annotated[bool, Parameter(negative="")] = False
+    quiet: Annotated[bool, Parameter(alias="-q", negative="")] = False
+    verbose: Annotated[bool, Parameter(alias="-v", negative="")] = False
+
+    def load(self, design: str) -> Loaded:
+        """Load everything the options name. Raises InputError for what cannot be used."""
+        if self.group and self.moments:
+            raise InputError("--group and --moments exclude each other; a file of moments is a group of its own")
+        loaded = load_design(design, self.dims)
+        moments = load_moments(self.moments or self.group or "p1p2")
+        return Loaded(loaded, moments, crank_speed(self.cadence, loaded))
+
+
+def crank_speed(cadence: float | None, design: Design) -> float:
+    """Crank speed in rad/s of a --cadence in rpm, by default the design's own."""
+    if cadence is None:
+        return design.linkage.cadence
+    if not 0 < cadence <= HIGHEST_CADENCE:
+        raise InputError(f"--cadence is {cadence:g}; it must be above 0 and at most {HIGHEST_CADENCE:g} rpm")
+    return cadence * math.pi / 30

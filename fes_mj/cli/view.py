@@ -1,0 +1,30 @@
+"""`fes_mj view`: the model in MuJoCo's interactive viewer."""
+
+from __future__ import annotations
+
+import os
+import sys
+
+from fes_mj.cli.options import RunOptions
+from fes_mj.errors import MissingPartError
+
+_DEFAULTS = RunOptions()
+
+
+def view(design: str, /, *, options: RunOptions = _DEFAULTS) -> int:
+    """Watch a design run in MuJoCo's viewer, under the torque map and the crank servo.
+
+    Parameters
+    ----------
+    design
+        trt, r1, r2, d1, d2, or a path to a design file.
+    """
+    loaded = options.load(design)
+    if sys.platform == "linux" and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
+        raise MissingPartError(
+            "the viewer needs a screen and there is none; make a video instead: fes_mj simulate ... --render out.mp4"
+        )
+    from fes_mj.render import show_viewer
+
+    show_viewer(*loaded)
+    return 0
