@@ -3,39 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from fes_mj.checks import Check, check
 from fes_mj.design import Design
 from fes_mj.inverse_dynamics import crank_moment
 from fes_mj.simulation import Simulation, simulate
 from fes_mj.statics import QuasiStatic, quasi_static
 from fes_mj.torque import JointMoments
 
-# Cycle-mean power: masses and weight return their energy, so only discretisation and loop softness are left.
-MEAN_POWER_LIMIT = 5e-4  # relative
-LOOP_GAP_LIMIT = 1e-5  # m
-CADENCE_RIPPLE_LIMIT = 1e-4  # relative
-POWER_RMS_LIMIT = 0.1  # W, instantaneous power of one leg
-ENERGY_LIMIT = 5e-4  # lost energy per joint work
 # The near-massless variant keeps so much of all masses that inertia adds this power to the quasi-static curve. With
 # less, the loops, whose stiffness MuJoCo scales with the masses, give way to the jumps of the torque map.
 INERTIA_POWER_RMS = 0.03  # W
-
-
-class Check(NamedTuple):
-    """One comparison: a value that must stay at or below its limit, both in `unit` ("" is relative)."""
-
-    name: str
-    value: float
-    limit: float
-    unit: str = ""
-
-    @property
-    def ok(self) -> bool:
-        return self.value <= self.limit  # NaN is not
 
 
 @dataclass(frozen=True)
@@ -49,7 +31,7 @@ class CrossCheck:
 
     @property
     def agrees(self) -> bool:
-        return all(check.ok for check in self.checks)
+        return all(each.ok for each in self.checks)
 
     @property
     def relative_difference(self) -> float:
@@ -72,12 +54,12 @@ def cross_check(
     simulation = simulate(design, moments, **options)
     massless = simulate(design, moments, **options, mass_scale=near_massless(static), gravity=0.0)
     checks = (
-        Check("mean_power", abs(relative_difference(simulation.power_mean, static.power_mean)), MEAN_POWER_LIMIT),
-        Check("loop_gap", simulation.loop_gap_max, LOOP_GAP_LIMIT, "m"),
-        Check("cadence_ripple", simulation.cadence_ripple, CADENCE_RIPPLE_LIMIT),
-        Check("inverse_dynamics", _rms_per_leg(simulation, reference_power(simulation)), POWER_RMS_LIMIT, "W"),
-        Check("massless_statics", _rms_per_leg(massless, reference_power(massless, 0.0)), POWER_RMS_LIMIT, "W"),
-        Check("energy_balance", abs(simulation.energy.lost / simulation.energy.joint_work), ENERGY_LIMIT),
+        check("mean_power", abs(relative_difference(simulation.power_mean, static.power_mean))),
+        check("loop_gap", simulation.loop_gap_max),
+        check("cadence_ripple", simulation.cadence_ripple),
+        check("inverse_dynamics", _rms_per_leg(simulation, reference_power(simulation))),
+        check("massless_statics", _rms_per_leg(massless, reference_power(massless, 0.0))),
+        check("energy_balance", abs(simulation.energy.lost / simulation.energy.joint_work)),
     )
     return CrossCheck(simulation, massless, static, checks)
 

@@ -60,12 +60,14 @@ def build_mjcf(
     legs: int = 1,
     mass_scale: float = 1.0,
     gravity: float = GRAVITY,
+    loop_solref: tuple[float, float] = LOOP_SOLREF,
     variant: str = "sites",
 ) -> mujoco.MjSpec:
     """The model of a design at a cadence (rad/s, by default Eq. 16), assembled, with a keyframe at crank angle 0.
 
     timestep: s; rounded so that a turn is a whole number of steps. mass_scale: factor on every mass and inertia.
-    variant: loops anchored at "sites" or on "bodies". Raises AssemblyError if the linkage does not close.
+    loop_solref: MuJoCo's time constant (s) and damping ratio of the loops. variant: loops anchored at "sites" or on
+    "bodies". Raises AssemblyError if the linkage does not close.
     """
     kinematics.require_assembly(design)
     cadence = design.linkage.cadence if cadence is None else cadence
@@ -75,32 +77,46 @@ def build_mjcf(
     # as authored and at full precision: the default output has six digits, half a micrometre of loop error
     spec.compiler.savecompiled = spec.compiler.savecanonical = False
     spec.compiler.degree = False
-    _set_options(spec, 2 * math.pi / cadence / steps_per_turn(cadence, timestep), gravity)
+    set_options(spec, 2 * math.pi / cadence / steps_per_turn(cadence, timestep), gravity)
     root = spec.worldbody.add_body(name="tricycle")  # one fixed root: some readers drop all bodies but the first
     masses = {body: _scaled(part, mass_scale) for body, part in inertias(design).items()}
     masses["crank"] = combine(*(_turned(masses["crank"], -leg.lag) for leg in LEGS[legs]))
-    crank = _add_body(root, "crank", _position(design.linkage.crank_centre), masses["crank"])
+    crank = add_body(root, "crank", _position(design.linkage.crank_centre), masses["crank"])
     crank.add_site(name="crank_torque")
     state = {"crank": (0.0, cadence)}
     for leg in LEGS[legs]:
         start = _start_state(design, leg, cadence)
         _add_leg(spec, root, design, leg, masses, start, variant)
         state |= {leg.prefix + joint: values for joint, values in start.items()}
+    for equality in spec.equalities:
+        equality.solref = loop_solref
     _add_drives(spec, LEGS[legs])
     _add_keyframe(spec, state)
     return spec
 
 
+def joint_motion(motion: kinematics.Motion) -> dict[str, tuple[Any, Any, Any]]:
+    """Angle (rad) of every joint of a leg but the crank, and its first two derivatives by the crank angle."""
+    turning = motion.turning
+    joints = {
+        "hip": (motion.hip_angle, *turning["thigh"]),
+        "knee": (motion.knee_angle, *_difference(turning["thigh"], turning["shank"])),
+    }
+    if "rocker" in turning:
+        rocker, coupler = motion.direction("rocker"), motion.direction("coupler")
+        joints["rocker"] = (np.angle(rocker), *turning["rocker"])
+        joints["coupler"] = (np.angle(coupler / rocker), *_difference(turning["coupler"], turning["rocker"]))
+    return joints
+
+
+def _difference(one: tuple[Any, Any], other: tuple[Any, Any]) -> tuple[Any, Any]:
+    return (one[0] - other[0], one[1] - other[1])
+
+
 def _start_state(design: Design, leg: Leg, cadence: float) -> dict[str, tuple[float, float]]:
     """Angle (rad) and speed (rad/s) of every joint of a leg but the crank, at crank angle 0."""
-    motion = kinematics.solve(design, np.array([-leg.lag]))
-    joints = {"hip": (motion.hip_angle, motion.hip_rate), "knee": (motion.knee_angle, motion.knee_rate)}
-    if "rocker" in motion.turning:
-        rocker, coupler = motion.direction("rocker"), motion.direction("coupler")
-        turning = motion.turning["rocker"][0]
-        joints["rocker"] = (np.angle(rocker), turning)
-        joints["coupler"] = (np.angle(coupler / rocker), motion.turning["coupler"][0] - turning)
-    return {joint: (float(angle[0]), cadence * float(rate[0])) for joint, (angle, rate) in joints.items()}
+    joints = joint_motion(kinematics.solve(design, np.array([-leg.lag])))
+    return {joint: (float(angle[0]), cadence * float(rate[0])) for joint, (angle, rate, _) in joints.items()}
 
 
 def _scaled(inertia: Inertia, scale: float) -> Inertia:
@@ -111,7 +127,8 @@ def _turned(inertia: Inertia, angle: float) -> Inertia:
     return inertia._replace(centre=inertia.centre * complex(math.cos(angle), math.sin(angle)))
 
 
-def _set_options(spec: mujoco.MjSpec, timestep: float, gravity: float) -> None:
+def set_options(spec: mujoco.MjSpec, timestep: float, gravity: float) -> None:
+    """Solver options for closed planar loops: time step in s, gravity in m/s^2 along -z."""
     option = spec.option
     option.timestep = timestep
     option.gravity = (0.0, 0.0, -gravity)
@@ -125,7 +142,7 @@ def _position(point: complex, lateral: float = 0.0) -> tuple[float, float, float
     return (float(np.real(point)), lateral, float(np.imag(point)))
 
 
-def _add_body(
+def add_body(
     parent: Any,
     name: str,
     pos: tuple[float, float, float],
@@ -163,7 +180,7 @@ def _add_leg(
     angle = {joint: values[0] for joint, values in start.items()}
 
     def add(parent: Any, body: str, pos: tuple[float, float, float], joint: str, **pose: Any) -> Any:
-        return _add_body(parent, prefix + body, pos, masses[body], joint=prefix + joint, angle=angle[joint], **pose)
+        return add_body(parent, prefix + body, pos, masses[body], joint=prefix + joint, angle=angle[joint], **pose)
 
     thigh = add(root, "thigh", _position(0j, leg.lateral), "hip", turned=linkage.seat_angle)
     # extension turns the shank clockwise; at knee angle 0 it would lie folded along the thigh
@@ -189,7 +206,7 @@ def _close_loop(spec: mujoco.MjSpec, design: Design, leg: Leg, cut: str, variant
         owners.append(owner)
         sites.append(spec.body(owner).add_site(name=f"{leg.prefix}{body}_{cut}", pos=pos))
     equality = spec.add_equality(name=leg.prefix + cut, type=mujoco.mjtEq.mjEQ_CONNECT)
-    equality.solref, equality.solimp = LOOP_SOLREF, LOOP_SOLIMP
+    equality.solimp = LOOP_SOLIMP
     if variant == "bodies":
         # the second anchor follows from the pose in the file, which is assembled
         equality.objtype, equality.name1, equality.name2 = mujoco.mjtObj.mjOBJ_BODY, *owners
@@ -209,11 +226,9 @@ def _close_loop(spec: mujoco.MjSpec, design: Design, leg: Leg, cut: str, variant
 
 def _add_drives(spec: mujoco.MjSpec, legs: tuple[Leg, ...]) -> None:
     """Joint motors (N m, extension positive), the servo that holds the cadence, the crank-torque sensor."""
-    measured = ["crank"]
     for leg in legs:
         for joint in (leg.prefix + "hip", leg.prefix + "knee"):
             spec.add_actuator(name=joint, trntype=mujoco.mjtTrn.mjTRN_JOINT, target=joint).set_to_motor()
-            measured.append(joint)
     servo = spec.add_actuator(name="crank_servo", trntype=mujoco.mjtTrn.mjTRN_JOINT, target="crank")
     servo.set_to_velocity(kv=SERVO_GAIN)
     spec.add_sensor(
@@ -222,7 +237,7 @@ def _add_drives(spec: mujoco.MjSpec, legs: tuple[Leg, ...]) -> None:
         objtype=mujoco.mjtObj.mjOBJ_SITE,
         objname="crank_torque",
     )
-    for joint in measured:
+    for joint in [joint.name for joint in spec.joints]:
         for quantity, kind in (
             ("angle", mujoco.mjtSensor.mjSENS_JOINTPOS),
             ("speed", mujoco.mjtSensor.mjSENS_JOINTVEL),

@@ -1,0 +1,44 @@
+"""Which checks are run, in which order: from the linkage over the model to the simulated turn and its refinement."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import NamedTuple
+
+from fes_mj.checks import Check
+from fes_mj.verification.case import Case
+from fes_mj.verification.dynamic import dynamic_checks, two_leg_checks
+from fes_mj.verification.geometry import geometry_checks, paper_checks
+from fes_mj.verification.model import map_checks, model_checks
+from fes_mj.verification.problems import problem_checks
+from fes_mj.verification.references import exact_checks
+from fes_mj.verification.refinement import refinement_checks
+
+
+class Stage(NamedTuple):
+    """Checks that belong together."""
+
+    title: str
+    run: Callable[[Case], list[Check]]
+
+
+QUICK = (
+    Stage("geometry", geometry_checks),
+    Stage("torque map", map_checks),
+    Stage("references", exact_checks),
+    Stage("model", model_checks),
+    Stage("simulated turn", dynamic_checks),
+    Stage("paper", paper_checks),
+)
+FULL = (*QUICK, Stage("two legs", two_leg_checks), Stage("refinement", refinement_checks))
+
+
+def verify(case: Case, stages: tuple[Stage, ...] = QUICK) -> Iterator[Check]:
+    """Run the checks of a case, stage by stage."""
+    for stage in stages:
+        yield from stage.run(case)
+
+
+def benchmarks() -> Iterator[Check]:
+    """Run the published problems, which do not depend on a case."""
+    yield from problem_checks()
