@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from typing import Any, NamedTuple
 from unittest import mock
 
@@ -81,10 +81,8 @@ def inject(fault: Fault, case: Case, baseline: dict[str, bool]) -> Verdict:
         edited = case._replace(design=fault.edit(case.design)) if fault.edit else case
         # a file with another gear ratio rides at another cadence
         faulty = edited._replace(cadence=edited.design.linkage.cadence)
-        try:
+        with suppress(AssemblyError):  # `loop_closure` has noticed before the model could be built
             failed += (each for each in verify(faulty, _stages(fault)) if not each.ok and baseline.get(each.name))
-        except AssemblyError:
-            pass  # `loop_closure` has noticed before the model could be built
     return Verdict(fault, tuple(failed))
 
 
