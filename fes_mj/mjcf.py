@@ -209,11 +209,9 @@ def _close_loop(spec: mujoco.MjSpec, design: Design, leg: Leg, cut: str, variant
 
 def _add_drives(spec: mujoco.MjSpec, legs: tuple[Leg, ...]) -> None:
     """Joint motors (N m, extension positive), the servo that holds the cadence, the crank-torque sensor."""
-    measured = ["crank"]
     for leg in legs:
         for joint in (leg.prefix + "hip", leg.prefix + "knee"):
             spec.add_actuator(name=joint, trntype=mujoco.mjtTrn.mjTRN_JOINT, target=joint).set_to_motor()
-            measured.append(joint)
     servo = spec.add_actuator(name="crank_servo", trntype=mujoco.mjtTrn.mjTRN_JOINT, target="crank")
     servo.set_to_velocity(kv=SERVO_GAIN)
     spec.add_sensor(
@@ -222,7 +220,7 @@ def _add_drives(spec: mujoco.MjSpec, legs: tuple[Leg, ...]) -> None:
         objtype=mujoco.mjtObj.mjOBJ_SITE,
         objname="crank_torque",
     )
-    for joint in measured:
+    for joint in [joint.name for joint in spec.joints]:
         for quantity, kind in (
             ("angle", mujoco.mjtSensor.mjSENS_JOINTPOS),
             ("speed", mujoco.mjtSensor.mjSENS_JOINTVEL),

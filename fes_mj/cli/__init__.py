@@ -9,6 +9,7 @@ from cyclopts import App, CycloptsError
 
 from fes_mj.cli.output import errors
 from fes_mj.errors import InputError, MissingPartError, UnstableError
+from fes_mj.headless import defer_gl
 
 AGREES, DISAGREES, BAD_INPUT, MISSING_PART, INTERRUPTED = 0, 1, 2, 3, 130
 
@@ -50,4 +51,5 @@ def _fail(message: object, code: int) -> int:
 
 def main() -> None:
     """Entry point of the fes_mj command."""
+    defer_gl()
     sys.exit(run())
