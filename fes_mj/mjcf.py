@@ -26,6 +26,9 @@ SERVO_GAIN = 1e5  # N m s/rad; holds the cadence to 1e-5, stable only with the `
 LOOP_SOLREF = (1e-5, 1.0)
 LOOP_SOLIMP = (0.9999, 0.9999, 0.001, 0.5, 2.0)
 
+# Added to make -0.0 a plain 0.0: MuJoCo leaves values that equal the default out of the file, and the sign with them.
+NO_MINUS = 0.0
+
 # Joints that are cut and closed again by a constraint: passive pins without drive, limit or friction.
 CUTS = ("pedal", "crank_pin")
 
@@ -122,7 +125,7 @@ def _set_options(spec: mujoco.MjSpec, timestep: float, gravity: float) -> None:
 
 
 def _position(point: complex, lateral: float = 0.0) -> tuple[float, float, float]:
-    return (float(np.real(point)), lateral, float(np.imag(point)))
+    return (float(np.real(point)) + NO_MINUS, lateral, float(np.imag(point)) + NO_MINUS)
 
 
 def _add_body(
@@ -140,8 +143,8 @@ def _add_body(
 
     turned: counter-clockwise from the parent at joint angle 0, rad. sense: -1 if the angle grows clockwise.
     """
-    pose = turned + sense * angle
-    body = parent.add_body(name=name, pos=pos, quat=(math.cos(pose / 2), 0, -math.sin(pose / 2), 0))
+    pose = -(turned + sense * angle) / 2 + NO_MINUS  # half the turn about +y
+    body = parent.add_body(name=name, pos=pos, quat=(math.cos(pose), 0, math.sin(pose), 0))
     # only the moment about the plane's normal matters; equal ones satisfy the triangle inequality
     body.mass, body.ipos, body.inertia = inertia.mass, _position(inertia.centre), [inertia.moment] * 3
     body.explicitinertial = True
