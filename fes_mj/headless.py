@@ -36,6 +36,7 @@ def use_offscreen_gl() -> None:
 
     A MUJOCO_GL set by the user is tried first. Raises MissingPartError if there is no OpenGL at all.
     """
+    os.environ.pop("PYOPENGL_PLATFORM", None)  # the backend chosen here sets it
     asked_for = _asked_for or os.environ.get("MUJOCO_GL", "")
     candidates = (asked_for, *_BACKENDS) if asked_for in ("egl", "osmesa", "glfw") else _BACKENDS
     backend = next((name for name in candidates if _works(name)), None)

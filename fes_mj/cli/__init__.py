@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Sequence
 
@@ -40,6 +41,11 @@ def run(arguments: Sequence[str] | None = None) -> int:
         return _fail(error, MISSING_PART)
     except UnstableError as error:
         return _fail(error, DISAGREES)
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # the reader left; nothing more to say
+        return DISAGREES
+    except OSError as error:
+        return _fail(f"{error.filename or 'output'}: {error.strerror}", BAD_INPUT)
     except KeyboardInterrupt:
         return _fail("interrupted; nothing was left half-written", INTERRUPTED)
 
