@@ -21,7 +21,7 @@ from scipy.integrate import solve_ivp
 
 from fes_mj.checks import Check, check
 from fes_mj.design import Design, Linkage, Rider
-from fes_mj.mjcf import LOOP_SOLIMP, add_body, build_mjcf, set_options
+from fes_mj.mjcf import AXIS, LOOP_SOLIMP, add_body, build_mjcf, set_options
 from fes_mj.segments import GRAVITY, Inertia
 from fes_mj.simulation import run_steps
 
@@ -71,6 +71,7 @@ def chain_spec(settings: Settings, windows: int = WINDOWS) -> mujoco.MjSpec:
     """The chain upright: bar i stands on the ground at x = i, coupler i leads from its top to the next bar's."""
     spec = mujoco.MjSpec()
     set_options(spec, settings.timestep, GRAVITY)
+    spec.default.joint.axis = AXIS
     spec.option.integrator = settings.integrator
     inertia = Inertia(BAR_MASS, complex(BAR_LENGTH / 2), BAR_MASS * BAR_LENGTH**2 / 12)
     upright, ends = math.pi / 2, (BAR_LENGTH, 0.0, 0.0)
