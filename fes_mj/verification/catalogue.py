@@ -332,9 +332,14 @@ FAULTS = (
         (Patch(simulation, "PRE_ROLL", lambda _: 1),),
     ),
     Fault(
-        "gear_squared", "gear ratio squared in the cadence", "tricycle_speed", _cadence(lambda linkage, rate: rate * linkage.gear_ratio)
+        "gear_squared",
+        "gear ratio squared in the cadence",
+        "tricycle_speed",
+        _cadence(lambda linkage, rate: rate * linkage.gear_ratio),
     ),
-    Fault("wheel_radius", "wheel radius for diameter in the cadence", "tricycle_speed", _cadence(lambda _, rate: 2 * rate)),
+    Fault(
+        "wheel_radius", "wheel radius for diameter in the cadence", "tricycle_speed", _cadence(lambda _, rate: 2 * rate)
+    ),
     Fault(
         "wrong_rate",
         "knee speed taken from the shank alone",

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fes_mj.mjcf import ONE_LEG, build_mjcf, steps_per_turn
+from fes_mj.mjcf import LEGS, build_mjcf, steps_per_turn
 from fes_mj.simulation import joint_drives, run_steps
 from fes_mj.torque import TorqueMap
 from fes_mj.verification.case import Case
@@ -56,7 +56,7 @@ def audit(case: Case, turns: int = 1) -> Audit:
     """Run the model of a case as `simulate` does, and record the forces of every kind."""
     model, steps = build_mjcf(case.design, cadence=case.cadence).compile(), turns * steps_per_turn(case.cadence)
     torque_map = TorqueMap(case.moments)
-    drives = joint_drives(ONE_LEG)
+    drives = joint_drives(LEGS[1])
     run = run_steps(
         model,
         {name: torque_map.feedback(joint) for name, joint in drives.items()},
