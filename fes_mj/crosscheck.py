@@ -59,7 +59,7 @@ def cross_check(
         check("cadence_ripple", simulation.cadence_ripple),
         check("inverse_dynamics", _rms_per_leg(simulation, reference_power(simulation))),
         check("massless_statics", _rms_per_leg(massless, reference_power(massless, 0.0))),
-        check("energy_balance", abs(simulation.energy.lost / simulation.energy.joint_work)),
+        check("energy_balance", share(simulation.energy.lost, simulation.energy.joint_work)),
     )
     return CrossCheck(simulation, massless, static, checks)
 
@@ -69,6 +69,13 @@ def near_massless(static: QuasiStatic) -> float:
     massive = crank_moment(static.design, static.moments, static.cadence, static.crank_angle, gravity=0.0)
     inertia_power = static.cadence * np.sqrt(np.mean((massive - static.crank_moment) ** 2))
     return float(min(1.0, INERTIA_POWER_RMS / inertia_power))
+
+
+def share(part: float, whole: float) -> float:
+    """|part / whole|; infinite if there is a part of nothing."""
+    if whole == 0:
+        return 0.0 if part == 0 else np.inf
+    return abs(part / whole)
 
 
 def relative_difference(value: float, reference: float) -> float:

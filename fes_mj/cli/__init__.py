@@ -24,6 +24,8 @@ _COMMANDS = {
     "simulate": "Simulate a design in MuJoCo and compare its crank power with statics.",
     "static": "Mean crank power of a design by statics, without MuJoCo.",
     "export": "Write the MJCF model of a design, for other tools.",
+    "validate": "Run every check of the harness on designs, one verdict each.",
+    "explain": "What a check guards against and what usually breaks it.",
     "view": "Watch a design run in MuJoCo's interactive viewer.",
 }
 for _command, _help in _COMMANDS.items():

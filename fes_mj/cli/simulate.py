@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from fes_mj.cli.options import Loaded, RunOptions
-from fes_mj.cli.output import json_text, output, print_json, print_table
+from fes_mj.cli.output import json_text, number, output, print_json, print_table, verdict
 from fes_mj.cli.static import heading, print_notes, rows, summary
 from fes_mj.errors import InputError
 from fes_mj.files import require_folder, require_writable, write_text
@@ -135,9 +135,8 @@ def _print(result: CrossCheck, loaded: Loaded, verbose: bool) -> None:
         "Checks",
         ("check", "value", "limit", "verdict"),
         [
-            (check.name.replace("_", " "), _number(check.value, check.unit), _number(check.limit, check.unit), verdict)
+            (check.name, number(check.value, check.unit), number(check.limit, check.unit), verdict(check.ok))
             for check in result.checks
-            for verdict in ("[green]ok[/]" if check.ok else "[bold red]FAILED[/]",)
         ],
     )
     if verbose:
@@ -165,10 +164,6 @@ def _print_details(result: CrossCheck) -> None:
     forces = {loop.replace("_", " "): np.abs(force) for loop, force in run.loop_force.items()}
     cells = [(name, f"{force.mean():.1f}", f"{force.max():.1f}") for name, force in forces.items()]
     print_table("Constraint forces", ("loop", "mean N", "largest N"), cells)
-
-
-def _number(value: float, unit: str) -> str:
-    return f"{value:.2g} {unit}".rstrip()
 
 
 def _write(result: CrossCheck, out: Path) -> None:

@@ -54,6 +54,19 @@ class Verdict(NamedTuple):
         """The first check that noticed."""
         return self.failed[0] if self.failed else None
 
+    def as_json(self) -> dict[str, Any]:
+        """The verdict with the first check that noticed and how far beyond its limit it was (null: infinitely)."""
+        return {
+            "name": self.fault.name,
+            "mistake": self.fault.mistake,
+            "caught": self.caught,
+            "check": self.first.name if self.first else None,
+            "factor": self.first.factor if self.first else None,
+            "guard": self.fault.guard,
+            "caught_by_guard": self.guarded,
+            "failed": {each.name: each.factor for each in reversed(self.failed)},
+        }
+
 
 @contextmanager
 def injected(fault: Fault) -> Iterator[None]:

@@ -41,7 +41,7 @@ class Settings:
     solimp: tuple[float, ...]
 
 
-RECOMMENDED = Settings("RK4, stiff loops", mujoco.mjtIntegrator.mjINT_RK4, 1e-3, 2e-3, LOOP_SOLIMP)
+RECOMMENDED = Settings("RK4, stiff loops", mujoco.mjtIntegrator.mjINT_RK4, 0.5e-3, 1e-3, LOOP_SOLIMP)
 DEFAULTS = Settings("MuJoCo's defaults", mujoco.mjtIntegrator.mjINT_EULER, 2e-3, 0.02, (0.9, 0.95, 0.001, 0.5, 2.0))
 
 

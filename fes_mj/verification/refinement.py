@@ -6,12 +6,14 @@ The two are varied one at a time: on the softness axis a finer step converges, t
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from typing import Any
 
 import numpy as np
 
 from fes_mj import kinematics
 from fes_mj.checks import Check
+from fes_mj.crosscheck import relative_difference, share
 from fes_mj.mjcf import LOOP_SOLREF, steps_per_turn
 from fes_mj.simulation import Simulation, simulate
 from fes_mj.statics import joint_moments, quasi_static, virtual_work
@@ -78,9 +80,23 @@ class Refinement:
         """Discretisation error of the mean power at the recommended step, with Roache's safety factor, relative."""
         return SAFETY * abs(self.steps[0].work_error - self.extrapolated)
 
+    def as_json(self) -> dict[str, Any]:
+        """Levels, orders and what follows from them."""
+        return {
+            "steps": [asdict(level) for level in self.steps],
+            "softness": [asdict(level) for level in (*self.softness, self.recommended, self.stiffer)],
+            "gap_order": self.gap_order,
+            "energy_order": self.energy_order,
+            "softness_order": self.softness_order,
+            "extrapolated_work_error": self.extrapolated,
+            "power_uncertainty": self.uncertainty,
+        }
+
 
 def observed_order(sizes: list[float], errors: list[float]) -> float:
-    """Slope of log |error| over log size, by least squares."""
+    """Slope of log |error| over log size, by least squares; NaN for errors that have no logarithm."""
+    if not (np.isfinite(errors).all() and np.all(errors)):
+        return math.nan
     return float(np.polyfit(np.log(sizes), np.log(np.abs(errors)), 1)[0])
 
 
@@ -97,9 +113,8 @@ def refine(case: Case) -> Refinement:
             timestep=2 * math.pi / case.cadence / (factor * count),
             loop_solref=(loop_time, LOOP_SOLREF[1]),
         )
-        return Level(
-            run.timestep, loop_time, run.loop_gap_max, run.energy.lost / run.energy.joint_work, _work(run) / exact - 1
-        )
+        lost, error = share(run.energy.lost, run.energy.joint_work), relative_difference(_work(run), exact)
+        return Level(run.timestep, loop_time, run.loop_gap_max, lost, error)
 
     stiff = LOOP_SOLREF[0]
     steps = tuple(level(factor, stiff) for factor in STEP_FACTORS)
