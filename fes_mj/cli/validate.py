@@ -17,7 +17,6 @@ from fes_mj.errors import InputError
 from fes_mj.files import require_writable, write_text
 from fes_mj.kinematics import require_assembly
 from fes_mj.provenance import provenance
-from fes_mj.torque import GROUPS
 
 if TYPE_CHECKING:
     from fes_mj.verification.case import Case
@@ -87,7 +86,8 @@ def _cases(designs: Sequence[str], options: RunOptions, quick: bool) -> Iterator
     from fes_mj.paper.printed import table1
     from fes_mj.verification.case import Case
 
-    chosen = [options] if quick or options.group or options.moments else [replace(options, group=g) for g in GROUPS]
+    both = [replace(options, group="p1p2"), replace(options, group="p1p3")]
+    chosen = [options] if quick or options.group or options.moments else both
     for design in dict.fromkeys(designs):
         printed = table1()[design] if design in CATALOGUE and options.dims == "identified" else None
         for choice in chosen:

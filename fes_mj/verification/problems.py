@@ -67,6 +67,11 @@ class Chain:
         return float(np.abs(self.top - self.exact).max())
 
 
+def compare_chains() -> list[Chain]:
+    """The chain at the recommended settings and at MuJoCo's defaults."""
+    return [run_chain(settings) for settings in (RECOMMENDED, DEFAULTS)]
+
+
 def chain_spec(settings: Settings, windows: int = WINDOWS) -> mujoco.MjSpec:
     """The chain upright: bar i stands on the ground at x = i, coupler i leads from its top to the next bar's."""
     spec = mujoco.MjSpec()
