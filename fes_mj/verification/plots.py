@@ -86,7 +86,9 @@ def _axes(x: str, y: str) -> tuple[Figure, Any]:
 
 def _svg(figure: Figure, axes: Any) -> str:
     handles, labels = axes.get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside upper center", ncols=3 if sum(map(len, labels)) < 50 else 2, fontsize=11)
+    figure.legend(
+        handles, labels, loc="outside upper center", ncols=3 if sum(map(len, labels)) < 50 else 2, fontsize=11
+    )
     stream = io.StringIO()
     figure.savefig(stream, format="svg", transparent=True, metadata={"Date": None, "Creator": None})
     text = stream.getvalue()

@@ -177,14 +177,20 @@ def _wrapped(angle: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.angle(np.exp(1j * angle))
 
 
-def problem_checks() -> list[Check]:
-    """Both problems at the recommended settings."""
+def chain_checks(subject: str) -> list[Check]:
+    """The chain at the recommended settings."""
     chain = run_chain(RECOMMENDED)
+    return [
+        check("a02_energy", chain.energy_drift, subject),
+        check("a02_path", chain.path_error, subject),
+        check("a02_gap", float(chain.gap.max()), subject),
+    ]
+
+
+def four_bar_checks(subject: str) -> list[Check]:
+    """The four-bar at the settings of `simulate`."""
     angle, gap = run_four_bar()
     return [
-        check("a02_energy", chain.energy_drift, "A02"),
-        check("a02_path", chain.path_error, "A02"),
-        check("a02_gap", float(chain.gap.max()), "A02"),
-        check("four_bar_angle", angle, "four-bar"),
-        check("four_bar_gap", gap, "four-bar"),
+        check("four_bar_angle", angle, subject),
+        check("four_bar_gap", gap, subject),
     ]
