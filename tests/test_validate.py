@@ -178,10 +178,8 @@ def report(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
     files = {"html": folder / "out.html", "xml": folder / "out.xml"}
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("fes_mj.verification.catalogue.FAULTS", FAULTS[:3])  # all of them: test_faults.py
-        code = run(
-            ["validate", "d1", "-q", "--faults", "--report", str(files["html"]), "--junit", str(files["xml"])]
-            + ["--video", str(folder / "run.mp4")]
-        )
+        outputs = ["--report", str(files["html"]), "--junit", str(files["xml"])]
+        code = run(["validate", "d1", "-q", "--faults", *outputs, "--video", str(folder / "run.mp4")])
     assert code == 0
     return {name: path.read_text() for name, path in files.items()}
 

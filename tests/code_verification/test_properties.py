@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import replace
-from pathlib import Path
+from random import Random
 
 import numpy as np
 import pytest
@@ -144,11 +144,11 @@ def test_a_design_file_reads_back_to_the_last_bit(tmp_path_factory: pytest.TempP
 @given(periodic_moments(), st.randoms(use_true_random=False))
 @settings(max_examples=20)
 def test_a_moments_file_reads_back(
-    tmp_path_factory: pytest.TempPathFactory, moments: JointMoments, random: object
+    tmp_path_factory: pytest.TempPathFactory, moments: JointMoments, random: Random
 ) -> None:
-    path: Path = tmp_path_factory.mktemp("moments") / "random.csv"
+    path = tmp_path_factory.mktemp("moments") / "random.csv"
     rows = [f"{float(np.degrees(a))!r},{float(k)!r},{float(h)!r}" for a, k, h in _rows(moments)]
-    random.shuffle(rows)  # type: ignore[attr-defined]
+    random.shuffle(rows)
     path.write_text("\n".join([",".join(COLUMNS), *rows]) + "\n")
     again = load_moments(path)
     assert np.array_equal(again.knee, moments.knee)
