@@ -1,21 +1,26 @@
-"""Where a result comes from: versions, machine, time."""
+"""Where a result comes from: versions, date, command."""
 
 from __future__ import annotations
 
+import hashlib
 import platform
 import sys
+from collections.abc import Iterable
 from datetime import UTC, datetime
 from importlib.metadata import version
+from pathlib import Path
+from typing import Any
 
-PACKAGES = ("fes-mj", "mujoco", "numpy", "scipy")
 
-
-def provenance() -> dict[str, str]:
-    """Versions of the packages that make the numbers, the platform, the command line and the time (UTC)."""
+def provenance(inputs: Iterable[Path] = ()) -> dict[str, Any]:
+    """Versions, date (UTC), command line without paths, and the SHA-256 of every input file by name."""
     return {
-        **{name: version(name) for name in PACKAGES},
+        "fes_mj": version("fes-mj"),
         "python": platform.python_version(),
-        "platform": platform.platform(),
-        "command": " ".join(["fes_mj", *sys.argv[1:]]),
-        "time": datetime.now(UTC).isoformat(timespec="seconds"),
+        "mujoco": version("mujoco"),
+        "numpy": version("numpy"),
+        "scipy": version("scipy"),
+        "date": datetime.now(UTC).isoformat(timespec="seconds"),
+        "command": " ".join([Path(sys.argv[0]).name, *sys.argv[1:]]),
+        "inputs": {path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in inputs},
     }

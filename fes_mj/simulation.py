@@ -18,6 +18,7 @@ from fes_mj.torque import JOINTS, JointMoments, TorqueMap
 
 # An exact pose with exact velocities still rings for some six steps, while the stiff loops find their forces.
 PRE_ROLL = 20  # steps
+FORCE_EVERY = 8  # steps; reading the constraint forces costs a tenth of a step
 
 
 @dataclass(frozen=True)
@@ -41,7 +42,7 @@ class Simulation:
 
     Dictionaries are by joint name ("hip", "knee", "crank", "rocker", "coupler"; with two legs "right_hip" ...; moments
     only of hips and knees), the loop ones by the name of the cut joint ("pedal", "crank_pin"). A loop's force is
-    complex, in the linkage's plane.
+    complex, in the linkage's plane, and sampled at every eighth step (FORCE_EVERY).
     """
 
     design: Design
@@ -158,7 +159,7 @@ def joint_drives(legs: tuple[Leg, ...]) -> dict[str, str]:
 
 
 class Run(NamedTuple):
-    """Records of a run: sensor rows of all steps and one more, energies (J), recorded fields (steps, size) by name."""
+    """Records of a run: sensor rows of all steps and one more, energies (J), recorded fields (rows, size) by name."""
 
     sensors: NDArray[np.float64]
     start_energy: tuple[float, float]  # potential, kinetic
@@ -171,10 +172,11 @@ def run_steps(
     feedback: dict[str, Callable[[float, float], float]],
     steps: int,
     record: tuple[str, ...] = ("efc_force",),
+    every: int = FORCE_EVERY,
 ) -> Run:
     """Step the model from its keyframe; `feedback` maps a joint's angle and speed to the motor of the same name.
 
-    record: fields of MjData to read after each step, each of constant size.
+    record: fields of MjData to read, each of constant size, after the first and then after each `every` steps.
     """
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, 0)
@@ -190,13 +192,14 @@ def run_steps(
         start, step, read = _energy(model, data), mujoco.mj_step, data.sensordata.tobytes
         sensors: list[bytes] = []
         fields: dict[str, list[bytes]] = {name: [] for name in record}
-        for _ in range(count):
+        for number in range(count):
             for actuator, position, speed, moment in drives:
                 ctrl[actuator] = moment(qpos[position], qvel[speed])
             step(model, data)
             sensors.append(read())
-            for name, rows in fields.items():
-                rows.append(getattr(data, name).tobytes())
+            if not number % every:
+                for name, rows in fields.items():
+                    rows.append(getattr(data, name).tobytes())
         if any(warning.number for warning in data.warning):
             raise UnstableError(
                 f"{model.names[: model.names.index(0)].decode()}: the simulation became unstable "

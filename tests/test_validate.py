@@ -197,7 +197,7 @@ def test_the_report_opens_with_the_verdict_and_shows_everything(report: dict[str
     page.feed(report["html"])
     text = re.sub(r"<[^>]*>", " ", report["html"].split("<body>")[1])
     order = [
-        text.index(word) for word in ("checks hold", "Runs", "d1 p1p2", "Crank power over", "Provenance", "platform")
+        text.index(word) for word in ("checks hold", "Runs", "d1 p1p2", "Crank power over", "Provenance", "python")
     ]
     assert order == sorted(order)
     assert page.count["svg"] == 2 + 2 + 1  # power and refinement of two groups, the chain

@@ -177,10 +177,10 @@ def _print_runs(found: list[Details]) -> None:
                 f"{row['static_power_mean_W']:.3f}",
                 f"{row['power_mean_W']:.3f}",
                 f"{row['numerical_uncertainty_W']:.4f}" if each.refinement else "not refined",
-                f"{100 * row['relative_difference']:+.4f}",
+                each.result.difference_text,
             )
         )
-    columns = ("run", "rpm", "static, W", "dynamic, W", "numerical uncertainty, W", "difference, %")
+    columns = ("run", "rpm", "static, W", "dynamic, W", "numerical uncertainty, W", "difference")
     print_table("Mean crank power of one leg", columns, rows)
 
 

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from fes_mj.crosscheck import CrossCheck, cross_check
+from fes_mj.crosscheck import CrossCheck, cross_check, power_scale
 from fes_mj.verification.case import Case
 from fes_mj.verification.energy import Audit, audit
 from fes_mj.verification.references import Curves, differences, measured_curves
@@ -26,7 +26,7 @@ class Details:
     @property
     def uncertainty(self) -> float:
         """Numerical uncertainty of the mean power, W; NaN without refinement."""
-        return self.refinement.uncertainty * self.result.static.power_mean if self.refinement else math.nan
+        return self.refinement.uncertainty * power_scale(self.result.static) if self.refinement else math.nan
 
     def summary(self) -> dict[str, Any]:
         """The case as the row of a table of runs."""

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from fes_mj.checks import Check
-from fes_mj.crosscheck import cross_check, share
+from fes_mj.crosscheck import cross_check, power_scale
 from fes_mj.verification.case import Case
 from fes_mj.verification.energy import audit
 
@@ -17,6 +17,7 @@ def dynamic_checks(case: Case) -> list[Check]:
     result, ledger = cross_check(case.design, case.moments, cadence=case.cadence), audit(case)
     run = result.simulation
     advance = float(run.crank_speed.sum() * run.timestep)
+    work = power_scale(result.static) * 2 * math.pi * ledger.turns / case.cadence
     count = min(len(ledger.crank_moment), len(run.crank_moment))
     return [
         case.check("stability", 0),
@@ -24,9 +25,9 @@ def dynamic_checks(case: Case) -> list[Check]:
         case.check("whole_turns", abs(advance - 2 * math.pi * run.turns)),
         case.check("sensor_servo", np.sqrt(np.mean((ledger.crank_moment - ledger.servo_moment) ** 2))),
         case.check("pairing", np.abs(ledger.crank_moment[:count] - run.crank_moment[:count]).max()),
-        case.check("energy_audit", share(ledger.integration, ledger.joint_work)),
-        case.check("constraint_work", share(ledger.constraint_work, ledger.joint_work)),
-        case.check("passive_work", share(ledger.damping, ledger.joint_work)),
+        case.check("energy_audit", abs(ledger.integration) / work),
+        case.check("constraint_work", abs(ledger.constraint_work) / work),
+        case.check("passive_work", abs(ledger.damping) / work),
     ]
 
 

@@ -62,6 +62,7 @@ def audit(case: Case, turns: int = 1) -> Audit:
         {name: torque_map.feedback(joint) for name, joint in drives.items()},
         steps,
         ("ctrl", "qfrc_constraint", "qfrc_passive", "actuator_force"),
+        every=1,
     )
     column = {model.sensor(i).name: int(model.sensor(i).adr[0]) for i in range(model.nsensor)}
     speeds = [column[f"{model.joint(i).name}_speed"] for i in range(model.njnt)]

@@ -13,7 +13,7 @@ import numpy as np
 
 from fes_mj import kinematics
 from fes_mj.checks import Check
-from fes_mj.crosscheck import relative_difference, share
+from fes_mj.crosscheck import power_scale
 from fes_mj.mjcf import LOOP_SOLREF, steps_per_turn
 from fes_mj.simulation import Simulation, simulate
 from fes_mj.statics import joint_moments, quasi_static, virtual_work
@@ -30,7 +30,8 @@ SAFETY = 1.25  # Roache's factor for three grids
 class Level:
     """One run: time step and loop time constant (s), loop gap (m), energy lost and error of the work a turn, relative.
 
-    The work is the crank's over one exact turn, what is stored at its ends given back.
+    Relative is to the work of a turn, as crosscheck.power_scale has it. The work is the crank's over one exact turn,
+    what is stored at its ends given back.
     """
 
     timestep: float
@@ -103,7 +104,8 @@ def observed_order(sizes: list[float], errors: list[float]) -> float:
 def refine(case: Case) -> Refinement:
     """Run a case at every level."""
     count = steps_per_turn(case.cadence)
-    exact = quasi_static(case.design, case.moments, case.cadence, EXACT_POINTS).work_per_turn
+    exact = quasi_static(case.design, case.moments, case.cadence, EXACT_POINTS)
+    scale = power_scale(exact) * 2 * math.pi / case.cadence  # J
 
     def level(factor: int, loop_time: float) -> Level:
         run = simulate(
@@ -113,7 +115,7 @@ def refine(case: Case) -> Refinement:
             timestep=2 * math.pi / case.cadence / (factor * count),
             loop_solref=(loop_time, LOOP_SOLREF[1]),
         )
-        lost, error = share(run.energy.lost, run.energy.joint_work), relative_difference(_work(run), exact)
+        lost, error = run.energy.lost / scale, (_work(run) - exact.work_per_turn) / scale
         return Level(run.timestep, loop_time, run.loop_gap_max, lost, error)
 
     stiff = LOOP_SOLREF[0]
