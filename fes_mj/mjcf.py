@@ -15,6 +15,7 @@ import numpy as np
 
 from fes_mj import appearance, kinematics
 from fes_mj.design import LEGS, Design, Leg
+from fes_mj.errors import InputError
 from fes_mj.segments import GRAVITY, Inertia, combine, inertias
 
 TARGET_TIMESTEP = 0.25e-3  # s; the loop gap grows with (speed * step)^2, the error of the torque reading with the step
@@ -59,7 +60,8 @@ def build_mjcf(
 
     timestep: s; rounded so that a turn is a whole number of steps. mass_scale: factor on every mass and inertia.
     loop_solref: MuJoCo's time constant (s) and damping ratio of the loops, by default LOOP_SOLREF.
-    variant: loops anchored at "sites" or on "bodies". Raises AssemblyError if the linkage does not close.
+    variant: loops anchored at "sites" or on "bodies". Raises AssemblyError if the linkage does not close,
+    InputError if MuJoCo refuses it.
     """
     kinematics.require_assembly(design)
     cadence = design.linkage.cadence if cadence is None else cadence
@@ -252,7 +254,10 @@ def _add_drives(spec: mujoco.MjSpec, legs: tuple[Leg, ...]) -> None:
 
 def _add_keyframe(spec: mujoco.MjSpec, state: dict[str, tuple[float, float]]) -> None:
     """Exact position and velocity at crank angle 0, the servo at its cadence and the joint motors idle."""
-    model = spec.compile()
+    try:
+        model = spec.compile()
+    except ValueError as error:
+        raise InputError(f"{spec.modelname}: MuJoCo cannot build the model: {' '.join(str(error).split())}") from None
     qpos, qvel, ctrl = np.zeros(model.nq), np.zeros(model.nv), np.zeros(model.nu)
     for joint, (angle, speed) in state.items():
         address = model.joint(joint).qposadr[0]

@@ -14,6 +14,8 @@ from fes_mj.headless import defer_gl
 
 AGREES, DISAGREES, BAD_INPUT, MISSING_PART, INTERRUPTED = 0, 1, 2, 3, 130
 
+LONGEST_MESSAGE = 1000  # characters
+
 app = App(
     name="fes_mj",
     help="Does a pedalling linkage for FES cycling deliver its power when legs have mass and loops must close?",
@@ -53,7 +55,10 @@ def run(arguments: Sequence[str] | None = None) -> int:
 
 
 def _fail(message: object, code: int) -> int:
-    errors.print(f"fes_mj: {message}", markup=False, highlight=False, soft_wrap=True)
+    text = str(message)
+    if len(text) > LONGEST_MESSAGE:  # quoted input can be as long as the file
+        text = f"{text[: LONGEST_MESSAGE // 2]} ... {text[-LONGEST_MESSAGE // 2 :]}"
+    errors.print(f"fes_mj: {text}", markup=False, highlight=False, soft_wrap=True)
     return code
 
 

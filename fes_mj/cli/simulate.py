@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 _DEFAULTS = RunOptions()
 LONGEST_TIMESTEP = 0.02  # s
 MOST_TURNS = 1000
+MOST_STEPS = 4_000_000  # of one run; its record takes a gigabyte
 
 
 def simulate(
@@ -52,6 +53,7 @@ def simulate(
     """
     loaded = options.load(design)
     _check(render, out, timestep, turns)
+    _check_steps(loaded.cadence, timestep, turns)
     from fes_mj.crosscheck import cross_check
 
     result = cross_check(
@@ -82,6 +84,18 @@ def _check(render: Path | None, out: Path | None, timestep: float | None, turns:
         raise InputError(f"--timestep is {timestep:g}; it must be above 0 and at most {LONGEST_TIMESTEP:g} s")
     if not 1 <= turns <= MOST_TURNS:
         raise InputError(f"--turns is {turns}; it must be from 1 to {MOST_TURNS}")
+
+
+def _check_steps(cadence: float, timestep: float | None, turns: int) -> None:
+    """Refuse runs whose record would not fit into memory."""
+    from fes_mj.mjcf import steps_per_turn
+
+    steps = turns * steps_per_turn(cadence, timestep)
+    if steps > MOST_STEPS:
+        raise InputError(
+            f"--turns {turns} would take {steps:.3g} time steps; at most {MOST_STEPS:.0e} fit into memory: "
+            "give fewer turns or a longer --timestep"
+        )
 
 
 def _summary(result: CrossCheck) -> dict[str, Any]:

@@ -284,7 +284,7 @@ FAULTS = (
     Fault("soft_loops", "loops with a time constant of 2 ms", "gap_order", _in_model(_set(solref=(0.002, 1.0)))),
     Fault("loop_inactive", "loop constraints switched off", "keyframe", _in_model(_set(active=False))),
     Fault("pins_apart", "the two sides of the pedal pin 1 mm apart sideways", "keyframe", _in_model(_pins_apart)),
-    Fault("weak_servo", "servo gain 20 instead of 1e5 N m s/rad", "cadence_ripple", _in_model(_weak_servo)),
+    Fault("weak_servo", "servo gain of 20 N m s/rad", "cadence_ripple", _in_model(_weak_servo)),
     Fault(
         "wrong_integrator",
         "implicitfast instead of discrete",

@@ -129,8 +129,8 @@ def refine(case: Case) -> Refinement:
 def _work(run: Simulation) -> float:
     """Crank work of one exact turn, J.
 
-    The servo yields a little, so the run covers 2e-5 rad more than a turn: the work of that angle is taken off, and the
-    energy that masses and weight hold at its end and not at its beginning is added.
+    The servo yields a little, so the run covers a few millionths of a rad more than a turn: the work of that angle is
+    taken off, and the energy that masses and weight hold at its end and not at its beginning is added.
     """
     overrun = float(run.crank_speed.sum() * run.timestep) - 2 * math.pi * run.turns
     motion = kinematics.solve(run.design, run.crank_angle[:1])
