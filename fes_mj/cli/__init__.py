@@ -14,6 +14,7 @@ from fes_mj.headless import defer_gl
 
 AGREES, DISAGREES, BAD_INPUT, MISSING_PART, INTERRUPTED = 0, 1, 2, 3, 130
 
+INTERRUPTION = "interrupted; nothing was left half-written"
 LONGEST_MESSAGE = 1000  # characters
 
 app = App(
@@ -51,7 +52,11 @@ def run(arguments: Sequence[str] | None = None) -> int:
     except OSError as error:
         return _fail(f"{error.filename or 'output'}: {error.strerror}", BAD_INPUT)
     except KeyboardInterrupt:
-        return _fail("interrupted; nothing was left half-written", INTERRUPTED)
+        return _fail(INTERRUPTION, INTERRUPTED)
+    except ImportError as error:
+        if isinstance(error.__cause__, KeyboardInterrupt):  # while a compiled module was being loaded
+            return _fail(INTERRUPTION, INTERRUPTED)
+        raise
 
 
 def _fail(message: object, code: int) -> int:
