@@ -2,9 +2,9 @@
 PYTHON ?= python3
 VENV ?= .venv
 BIN = $(VENV)/bin
-EXTRAS = video,test,lint
+EXTRAS = video,report,test,lint
 
-.PHONY: demo test test-long lint format benchmark catalogue clean
+.PHONY: demo test test-long lint format benchmark catalogue verification clean
 
 demo: $(VENV)/.ready
 	mkdir -p demo
@@ -29,6 +29,10 @@ format: $(VENV)/.ready
 benchmark: $(VENV)/.ready
 	$(BIN)/pip install --quiet -c constraints.txt -e '.[benchmark]'
 	$(BIN)/python tools/benchmark.py
+
+# Every check on every design, refined, with all faults injected: results/verification.md
+verification: $(VENV)/.ready
+	$(BIN)/python tools/update_verification.py
 
 # What the package ships as data: the identified designs and the recovered moments.
 catalogue: $(VENV)/.ready
