@@ -31,7 +31,7 @@ class Part(NamedTuple):
     """A default class of geoms and the material it wears."""
 
     shape: mujoco.mjtGeom
-    size: float  # m: radius of a capsule or cylinder, half the width of a square bar, half the thickness of a pad
+    size: float  # m: radius of a capsule or cylinder, half the thickness of a pad
     colour: tuple[float, float, float]  # RGB, each 0 to 1
 
 
@@ -42,9 +42,9 @@ PARTS = {
     "boot": Part(_CAPSULE, 0.052, (0.27, 0.30, 0.35)),
     "hip": Part(_CYLINDER, 0.028, (0.85, 0.15, 0.75)),
     "knee": Part(_CYLINDER, 0.028, (0.05, 0.72, 0.80)),
-    "crank": Part(_BOX, 0.011, (0.88, 0.49, 0.16)),
-    "rocker": Part(_BOX, 0.011, (0.45, 0.42, 0.68)),
-    "coupler": Part(_BOX, 0.011, (0.36, 0.58, 0.36)),
+    "crank": Part(_CAPSULE, 0.011, (0.88, 0.49, 0.16)),
+    "rocker": Part(_CAPSULE, 0.011, (0.45, 0.42, 0.68)),
+    "coupler": Part(_CAPSULE, 0.011, (0.36, 0.58, 0.36)),
     "pin": Part(_CYLINDER, 0.011, (0.22, 0.23, 0.26)),
     "chainring": Part(_CYLINDER, 0.075, (0.36, 0.38, 0.42)),
     "frame": Part(_CAPSULE, 0.018, (0.64, 0.67, 0.70)),
