@@ -22,14 +22,21 @@ def measure(job: Job) -> Answer:
     put, start = mjx.put_model(model), mjx.put_data(model, data)
     jax.eval_shape(mjx.step, put, start)  # refuses what MJX does not know, without compiling
     answer = {"joints": int(put.njnt), "loops": int(put.neq), "keeps": keeps(model)}
-    if "steps" in job:
-        first = jax.jit(mjx.forward)(put, start)
-        jacobian = np.asarray(first._impl.efc_J).reshape(-1, model.nv)
-        answer["free"] = model.nv - int(np.linalg.matrix_rank(jacobian, tol=1e-6))
-        answer["acceleration"] = {name: float(first.qacc[model.joint(name).dofadr[0]]) for name in job["joints"]}
-        last = jax.jit(lambda state: jax.lax.fori_loop(0, job["steps"], lambda _, s: mjx.step(put, s), state))(start)
-        last = jax.jit(mjx.kinematics)(put, last)
-        answer["pedal"] = np.asarray(last.site_xpos[model.site("shank_pedal").id])[[0, 2]].tolist()
+    if "steps" not in job:
+        return answer
+
+    @jax.jit
+    def advance(state: mjx.Data, steps: int) -> mjx.Data:
+        return jax.lax.fori_loop(0, steps, lambda _, current: mjx.step(put, current), state)
+
+    first, last = advance(start, 1), advance(start, job["steps"])
+    # accelerations and loops are those of the state before the step
+    jacobian = np.asarray(first._impl.efc_J).reshape(-1, model.nv)
+    answer["free"] = model.nv - int(np.linalg.matrix_rank(jacobian, tol=1e-6))
+    answer["acceleration"] = {name: float(first.qacc[model.joint(name).dofadr[0]]) for name in job["joints"]}
+    data.qpos[:] = last.qpos
+    mujoco.mj_kinematics(model, data)
+    answer["pedal"] = data.site("shank_pedal").xpos[[0, 2]].tolist()
     return answer
 
 
