@@ -8,6 +8,7 @@ from importlib.metadata import version
 from importlib.resources import files
 from string import Template
 from typing import Any
+from xml.sax.saxutils import escape
 
 import numpy as np
 
@@ -35,7 +36,7 @@ FLOOR_GAP = 0.1  # m below the lowest point of the turn
 
 # Attribute -> the comment above its first line.
 _COMMENTS = {
-    'integrator="discrete"': "A turn is a whole number of steps. `discrete` (MuJoCo 4.0) bears the stiff servo.",
+    'integrator="discrete"': "A turn is a whole number of steps. `discrete` (MuJoCo 3.13) bears the stiff servo.",
     "<geom contype": "Geoms are pictures: they neither weigh nor touch.",
     "<equality solref": "MuJoCo's default, 0.02 s, opens the loops by millimetres and spoils the mean power.",
     "<inertial": "Planar: only the moment about y acts; the other two repeat it.",
@@ -64,7 +65,8 @@ def variant_options(variants: Iterable[str]) -> dict[str, Any]:
 def mjcf_text(design: Design, **options: Any) -> str:
     """The model of build_mjcf (same arguments) as commented MJCF that reloads bit for bit."""
     spec = build_mjcf(design, **options)
-    spec.comment = f"{spec.comment}. Written by fes_mj {version('fes-mj')}; m, kg, s, rad."
+    heading = f"{spec.comment}. Written by fes_mj {version('fes-mj')}; m, kg, s, rad."
+    spec.comment = heading.replace("--", "- -")  # which would end the comment
     spec.compile()
     lines, pending = [], dict(_COMMENTS)
     for line in spec.to_xml().splitlines():
@@ -86,8 +88,8 @@ def scene_text(design: Design, model_file: str) -> str:
         return " ".join(f"{value:.4g}" for value in values)
 
     return Template((files("fes_mj") / "data" / "scene.xml").read_text(encoding="utf-8")).substitute(
-        name=design.name,
-        model_file=model_file,
+        name=escape(design.name, {'"': "&quot;"}),
+        model_file=escape(model_file, {'"': "&quot;"}),
         centre=text(*middle),
         extent=text(distance * math.tan(math.radians(FIELD_OF_VIEW) / 2)),
         camera=text(*position),

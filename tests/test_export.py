@@ -5,8 +5,10 @@ from __future__ import annotations
 import csv
 import itertools
 import math
+from importlib.resources import files
 from pathlib import Path
 from typing import get_args
+from xml.etree import ElementTree
 
 import mujoco
 import numpy as np
@@ -201,6 +203,16 @@ def test_export_writes_model_table_and_scene(tmp_path: Path, capsys: pytest.Capt
     assert (loaded.nu, loaded.nv) == (0, 9)
     assert (tmp_path / "mine.csv").read_text().startswith("crank_angle_deg,right_knee_deg,")
     assert str(model) in capsys.readouterr().out
+
+
+def test_any_file_name_gives_valid_xml(tmp_path: Path) -> None:
+    source = Path(str(files("fes_mj"))) / "data" / "designs" / "identified" / "r1.toml"
+    design, model = tmp_path / 'R&D --> "1".toml', tmp_path / 'R&D "1" <new>.xml'
+    design.write_text(source.read_text())
+    assert run(["export", str(design), "-o", str(model), "--scene"]) == 0
+    for path in (model, tmp_path / "scene.xml"):
+        ElementTree.parse(path)
+        assert mujoco.MjModel.from_xml_path(str(path)).njnt == 5
 
 
 @pytest.mark.parametrize(

@@ -52,7 +52,7 @@ def _readme(design: Design, moments: Any) -> str:
         title=design.linkage.architecture.title,
         rpm=f"{design.linkage.cadence * 30 / math.pi:.2f}",
         joints=model.njnt + model.neq,
-        loops="one" if model.neq == 1 else "two",
+        loops="one of them a `connect` constraint" if model.neq == 1 else "two of them `connect` constraints",
         mass=f"{design.rider.mass:g}",
         thigh=f"{design.rider.thigh:g}",
         shank=f"{design.rider.shank:g}",

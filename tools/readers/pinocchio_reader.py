@@ -13,11 +13,13 @@ STABILISATION = 500.0
 def measure(job: Job) -> Answer:
     model, loops = pinocchio.buildModelAndLegacyConstraintsFromMJCF(job["model"])
     data = model.createData()
+    pictures = pinocchio.buildGeomFromMJCF(model, job["model"], pinocchio.GeometryType.VISUAL)
     keyframes = [item.key() for item in model.referenceConfigurations if item.key() != "qpos0"]
     answer: Answer = {
         "joints": model.njoints - 1,
         "loops": len(loops),
         "keeps": {
+            "geoms": pictures.ngeoms,
             "sites": sum(frame.name.endswith(("_pedal", "_crank_pin", "_torque")) for frame in model.frames),
             "keyframe": len(keyframes),
         },
