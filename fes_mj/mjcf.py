@@ -25,9 +25,9 @@ INTEGRATORS = {"discrete": mujoco.mjtIntegrator.mjINT_DISCRETE, "euler": mujoco.
 SERVO = "crank_servo"
 SERVO_GAIN = 1e6  # N m s/rad; holds the cadence to 1e-5 from 10 rpm on, stable only with the `discrete` integrator
 FLYWHEEL = 1e6  # kg m^2 of crank armature; holds the cadence to 1e-6 without a servo
-# MuJoCo's default solref (0.02 s) opens the loops by millimetres and bends the mean power by tens of percent; shorter
-# than 1e-5 s gains nothing, the softness left is that of solimp, which MuJoCo caps at 0.9999. Other integrators than
-# `discrete` raise it to two time steps, for stability.
+# With MuJoCo's defaults (0.02 s, 0.9) the loops open by 2 to 6 mm and the mean power falls by 43 % (R2) and 26 % (D1).
+# A time constant below 1e-5 s gains nothing: the gap that is left is the time step's. Other integrators than `discrete`
+# raise it to two time steps.
 LOOP_SOLREF = (1e-5, 1.0)
 LOOP_SOLIMP = (0.9999, 0.9999, 0.001, 0.5, 2.0)
 

@@ -59,8 +59,8 @@ class Reader:
 
 
 def _rounding(dtype: type[np.floating[Any]]) -> Callable[[Answer], float]:
-    """Two coordinates of 1 m, rounded, times the stiffness of the loops over the length of the crank."""
-    return lambda reference: 2 * float(np.finfo(dtype).eps) * reference["stiffness"] / reference["crank"]
+    """The four coordinates of a loop's ends, 1 m and rounded, times the loop's stiffness over the length of the crank."""
+    return lambda reference: 4 * float(np.finfo(dtype).eps) * reference["stiffness"] / reference["crank"]
 
 
 def _softness(factor: float) -> Callable[[Answer], float]:
