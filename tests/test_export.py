@@ -16,9 +16,9 @@ import pytest
 from numpy.typing import NDArray
 
 from fes_mj import load_design, load_moments
+from fes_mj.checks import criteria
 from fes_mj.cli import run
 from fes_mj.cli.export import _Variant
-from fes_mj.crosscheck import CADENCE_RIPPLE_LIMIT, LOOP_GAP_LIMIT, MEAN_POWER_LIMIT
 from fes_mj.design_file import CATALOGUE
 from fes_mj.errors import InputError
 from fes_mj.export import VARIANTS, mjcf_text, scene_text, sidecar_text, variant_options
@@ -125,10 +125,10 @@ def test_the_compatible_variant_gives_the_power_of_statics(name: str) -> None:
     column = {model.sensor(i).name: int(model.sensor(i).adr[0]) for i in range(model.nsensor)}
     speed = record.sensors[:-1, column["crank_speed"]]
     power = record.sensors[:-1, column["crank_torque"] + 1] * speed
-    assert power.mean() == pytest.approx(quasi_static(design, moments).power_mean, rel=MEAN_POWER_LIMIT)
-    assert np.abs(speed / design.linkage.cadence - 1).max() < CADENCE_RIPPLE_LIMIT
+    assert power.mean() == pytest.approx(quasi_static(design, moments).power_mean, rel=criteria()["mean_power"].limit)
+    assert np.abs(speed / design.linkage.cadence - 1).max() < criteria()["cadence_ripple"].limit
     gaps = [record.sensors[:, (at := column[f"{model.equality(i).name}_gap"]) : at + 3] for i in range(model.neq)]
-    assert np.linalg.norm(gaps, axis=2).max() < LOOP_GAP_LIMIT
+    assert np.linalg.norm(gaps, axis=2).max() < criteria()["loop_gap"].limit
 
 
 @pytest.mark.parametrize("name", CATALOGUE)

@@ -61,7 +61,7 @@ class Reader:
 
 
 def _rounding(dtype: type[np.floating[Any]]) -> Callable[[Answer], float]:
-    """The four coordinates of a loop's ends, 1 m, rounded, times its stiffness over the length of the crank."""
+    """The four rounded coordinates of a loop, near 1 m, times its stiffness over the length of the crank."""
     return lambda reference: 4 * float(np.finfo(dtype).eps) * reference["stiffness"] / reference["crank"]
 
 

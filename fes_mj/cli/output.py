@@ -5,12 +5,15 @@ from __future__ import annotations
 import json
 import math
 import sys
-from collections.abc import Iterable, Sequence
-from typing import Any
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Any, TypeVar
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
+from rich.progress import Progress
 from rich.table import Table
+
+Item = TypeVar("Item")
 
 output = Console(highlight=False)
 errors = Console(stderr=True, highlight=False)
@@ -47,3 +50,19 @@ def print_table(title: str, columns: Sequence[str], rows: Iterable[Sequence[str]
     for row in rows:
         table.add_row(*row)
     output.print(table)
+
+
+def number(value: float, unit: str = "") -> str:
+    """A value with two digits and its unit."""
+    return f"{value:.2g} {unit}".rstrip()
+
+
+def verdict(ok: bool) -> str:
+    """The verdict on a check, in colour."""
+    return "[green]ok[/]" if ok else "[bold red]FAILED[/]"
+
+
+def track(items: Sequence[Item], title: str, quiet: bool = False) -> Iterator[Item]:
+    """The items one by one, with a progress bar on standard error that is gone when they are through."""
+    with Progress(console=errors, transient=True, disable=quiet) as progress:
+        yield from progress.track(items, description=title)
