@@ -62,7 +62,10 @@ class TorqueMap:
 
     def moment(self, joint: str, angle: Any, rate: Any) -> Any:
         """Moment in N m, any shape. angle: rad. rate: of any unit, its sign is the direction, zero is extension."""
-        source = source_angle(joint, angle, rate)
+        return self.at_source(joint, source_angle(joint, angle, rate))
+
+    def at_source(self, joint: str, source: Any) -> Any:
+        """Moment in N m at crank angles of the reference TRT, rad from top dead centre, any shape."""
         position = np.mod(source, 2 * np.pi) * (TABLE_SIZE / (2 * np.pi))
         index = np.nan_to_num(position).astype(np.int64)
         table = self._tables[joint]
