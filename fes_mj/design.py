@@ -140,3 +140,22 @@ class Design:
             "coupler": self.linkage.coupler,
         }
         return {body: lengths[body] for body in self.linkage.architecture.bodies}
+
+
+@dataclass(frozen=True)
+class Leg:
+    """One leg with its linkage: name prefix, how far its crank arm trails the first leg's (rad), plane's y (m)."""
+
+    prefix: str
+    lag: float
+    lateral: float
+
+    @property
+    def outwards(self) -> int:
+        """Sign of y away from the rider's middle."""
+        return -1 if self.lateral < 0 else 1
+
+
+ONE_LEG = (Leg("", 0.0, 0.0),)
+TWO_LEGS = (Leg("right_", 0.0, 0.17), Leg("left_", math.pi, -0.17))
+LEGS = {1: ONE_LEG, 2: TWO_LEGS}

@@ -95,15 +95,15 @@ def _read(path: Path) -> Design:
         raise InputError(f"{path}: cannot read the design file: {error.strerror}") from None
     except UnicodeDecodeError:
         raise InputError(f"{path}: the design file is not UTF-8 text") from None
-    except tomllib.TOMLDecodeError as error:
+    except ValueError as error:  # TOMLDecodeError, and numbers of thousands of digits
         raise InputError(f"{path}: not valid TOML: {error}") from None
     _refuse_unknown(path, "", content, ("linkage", "rider"))
     linkage, rider = (_table(path, content, name) for name in ("linkage", "rider"))
     kind = linkage.pop("kind", None)
-    if kind not in ARCHITECTURES:
+    if not isinstance(kind, str) or kind not in ARCHITECTURES:
         raise InputError(f"{path}: linkage.kind is {kind!r}; it must be one of {', '.join(ARCHITECTURES)}")
     sex = rider.pop("sex", Rider.sex)
-    if sex not in DE_LEVA:
+    if not isinstance(sex, str) or sex not in DE_LEVA:
         raise InputError(f"{path}: rider.sex is {sex!r}; it must be one of {', '.join(DE_LEVA)}")
     return Design(
         path.stem,
@@ -139,7 +139,7 @@ def _value(path: Path, name: str, value: Any, key: _Key) -> Any:
     parts = value if isinstance(value, list) else [value]
     numbers = all(isinstance(part, (int, float)) and not isinstance(part, bool) for part in parts)
     shaped = isinstance(value, list) == key.vector and len(parts) == (2 if key.vector else 1)
-    if not (numbers and shaped and all(math.isfinite(part) and key.accepts(part) for part in parts)):
+    if not (numbers and shaped and all(key.accepts(part) for part in parts)):
         metres = "metres" in key.allowed and numbers and any(LONGEST < abs(part) < math.inf for part in parts)
         hint = " (centimetres? lengths are in metres)" if metres else ""
         raise InputError(f"{path}: {name} is {value!r}; it must be {key.allowed}{hint}")

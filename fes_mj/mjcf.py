@@ -8,14 +8,13 @@ phi_h, `knee` is phi_k, `crank` is theta_2.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import Any
 
 import mujoco
 import numpy as np
 
-from fes_mj import kinematics
-from fes_mj.design import Design
+from fes_mj import appearance, kinematics
+from fes_mj.design import LEGS, Design, Leg
 from fes_mj.segments import GRAVITY, Inertia, combine, inertias
 
 TARGET_TIMESTEP = 0.25e-3  # s; the loop gap grows with (speed * step)^2, the error of the torque reading with the step
@@ -26,22 +25,13 @@ SERVO_GAIN = 1e5  # N m s/rad; holds the cadence to 1e-5, stable only with the `
 LOOP_SOLREF = (1e-5, 1.0)
 LOOP_SOLIMP = (0.9999, 0.9999, 0.001, 0.5, 2.0)
 
+# Angles grow counter-clockwise in the paper's view, which is about -y.
+AXIS = (0.0, -1.0, 0.0)
+# Added to make -0.0 a plain 0.0: MuJoCo leaves values that equal the default out of the file, and the sign with them.
+NO_MINUS = 0.0
+
 # Joints that are cut and closed again by a constraint: passive pins without drive, limit or friction.
 CUTS = ("pedal", "crank_pin")
-
-
-@dataclass(frozen=True)
-class Leg:
-    """One leg with its linkage: name prefix, how far its crank arm trails the first leg's (rad), plane's y (m)."""
-
-    prefix: str
-    lag: float
-    lateral: float
-
-
-ONE_LEG = (Leg("", 0.0, 0.0),)
-TWO_LEGS = (Leg("right_", 0.0, 0.12), Leg("left_", math.pi, -0.12))
-LEGS = {1: ONE_LEG, 2: TWO_LEGS}
 
 
 def steps_per_turn(cadence: float, timestep: float | None = None) -> int:
@@ -76,7 +66,9 @@ def build_mjcf(
     spec.compiler.savecompiled = spec.compiler.savecanonical = False
     spec.compiler.degree = False
     _set_options(spec, 2 * math.pi / cadence / steps_per_turn(cadence, timestep), gravity)
-    root = spec.worldbody.add_body(name="tricycle")  # one fixed root: some readers drop all bodies but the first
+    _set_defaults(spec)
+    # one fixed root: some readers drop all bodies but the first
+    root = spec.worldbody.add_body(name="tricycle", childclass="tricycle")
     masses = {body: _scaled(part, mass_scale) for body, part in inertias(design).items()}
     masses["crank"] = combine(*(_turned(masses["crank"], -leg.lag) for leg in LEGS[legs]))
     crank = _add_body(root, "crank", _position(design.linkage.crank_centre), masses["crank"])
@@ -86,6 +78,7 @@ def build_mjcf(
         start = _start_state(design, leg, cadence)
         _add_leg(spec, root, design, leg, masses, start, variant)
         state |= {leg.prefix + joint: values for joint, values in start.items()}
+    appearance.draw(spec, design, LEGS[legs])
     _add_drives(spec, LEGS[legs])
     _add_keyframe(spec, state)
     return spec
@@ -121,8 +114,19 @@ def _set_options(spec: mujoco.MjSpec, timestep: float, gravity: float) -> None:
     option.disableflags = int(mujoco.mjtDisableBit.mjDSBL_CONTACT | mujoco.mjtDisableBit.mjDSBL_ISLAND)
 
 
+def _set_defaults(spec: mujoco.MjSpec) -> None:
+    """The default class `tricycle`: what all joints, loops, sites and geoms of the model share."""
+    shared = spec.add_default("tricycle", spec.default)
+    shared.joint.axis = AXIS
+    shared.equality.solref, shared.equality.solimp = LOOP_SOLREF, LOOP_SOLIMP
+    shared.site.group, shared.site.size = 4, [0.005] * 3  # hidden unless asked for
+    # geoms are pictures: no mass, no contact
+    shared.geom.density, shared.geom.contype, shared.geom.conaffinity, shared.geom.group = 0, 0, 0, 2
+    appearance.define_parts(spec, shared)
+
+
 def _position(point: complex, lateral: float = 0.0) -> tuple[float, float, float]:
-    return (float(np.real(point)), lateral, float(np.imag(point)))
+    return (float(np.real(point)) + NO_MINUS, lateral, float(np.imag(point)) + NO_MINUS)
 
 
 def _add_body(
@@ -140,12 +144,14 @@ def _add_body(
 
     turned: counter-clockwise from the parent at joint angle 0, rad. sense: -1 if the angle grows clockwise.
     """
-    pose = turned + sense * angle
-    body = parent.add_body(name=name, pos=pos, quat=(math.cos(pose / 2), 0, -math.sin(pose / 2), 0))
+    pose = -(turned + sense * angle) / 2 + NO_MINUS  # half the turn about +y
+    body = parent.add_body(name=name, pos=pos, quat=(math.cos(pose), 0, math.sin(pose), 0))
     # only the moment about the plane's normal matters; equal ones satisfy the triangle inequality
     body.mass, body.ipos, body.inertia = inertia.mass, _position(inertia.centre), [inertia.moment] * 3
     body.explicitinertial = True
-    body.add_joint(name=joint or name, type=mujoco.mjtJoint.mjJNT_HINGE, axis=(0, -sense, 0), ref=angle)
+    hinge = body.add_joint(name=joint or name, ref=angle)
+    if sense < 0:
+        hinge.axis = [NO_MINUS - part for part in AXIS]
     return body
 
 
@@ -188,8 +194,7 @@ def _close_loop(spec: mujoco.MjSpec, design: Design, leg: Leg, cut: str, variant
             owner, pos = leg.prefix + body, _position(point)
         owners.append(owner)
         sites.append(spec.body(owner).add_site(name=f"{leg.prefix}{body}_{cut}", pos=pos))
-    equality = spec.add_equality(name=leg.prefix + cut, type=mujoco.mjtEq.mjEQ_CONNECT)
-    equality.solref, equality.solimp = LOOP_SOLREF, LOOP_SOLIMP
+    equality = spec.add_equality(spec.find_default("tricycle"), name=leg.prefix + cut, type=mujoco.mjtEq.mjEQ_CONNECT)
     if variant == "bodies":
         # the second anchor follows from the pose in the file, which is assembled
         equality.objtype, equality.name1, equality.name2 = mujoco.mjtObj.mjOBJ_BODY, *owners
@@ -209,11 +214,9 @@ def _close_loop(spec: mujoco.MjSpec, design: Design, leg: Leg, cut: str, variant
 
 def _add_drives(spec: mujoco.MjSpec, legs: tuple[Leg, ...]) -> None:
     """Joint motors (N m, extension positive), the servo that holds the cadence, the crank-torque sensor."""
-    measured = ["crank"]
     for leg in legs:
         for joint in (leg.prefix + "hip", leg.prefix + "knee"):
             spec.add_actuator(name=joint, trntype=mujoco.mjtTrn.mjTRN_JOINT, target=joint).set_to_motor()
-            measured.append(joint)
     servo = spec.add_actuator(name="crank_servo", trntype=mujoco.mjtTrn.mjTRN_JOINT, target="crank")
     servo.set_to_velocity(kv=SERVO_GAIN)
     spec.add_sensor(
@@ -222,7 +225,7 @@ def _add_drives(spec: mujoco.MjSpec, legs: tuple[Leg, ...]) -> None:
         objtype=mujoco.mjtObj.mjOBJ_SITE,
         objname="crank_torque",
     )
-    for joint in measured:
+    for joint in [joint.name for joint in spec.joints]:
         for quantity, kind in (
             ("angle", mujoco.mjtSensor.mjSENS_JOINTPOS),
             ("speed", mujoco.mjtSensor.mjSENS_JOINTVEL),

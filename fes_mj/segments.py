@@ -53,13 +53,10 @@ def inertias(design: Design) -> dict[str, Inertia]:
     rider, linkage = design.rider, design.linkage
     table = DE_LEVA[rider.sex]
     bodies = {"thigh": _segment(table["thigh"], rider.mass, rider.thigh, 0, 1)}
-    to_ankle = np.exp(1j * design.boot_angle)
-    sole = -1j * to_ankle  # the boot holds the foot at 90 deg to the shank, toes towards the pedal
-    foot_length = FOOT_LENGTH[rider.sex]
-    heel = rider.shank * to_ankle - ANKLE_FROM_HEEL * foot_length * sole
+    ankle, heel, toe = foot_points(design)
     bodies["shank"] = combine(
-        _segment(table["shank"], rider.mass, rider.shank, 0, to_ankle),
-        _segment(table["foot"], rider.mass, foot_length, heel, sole),
+        _segment(table["shank"], rider.mass, abs(ankle), 0, ankle / abs(ankle)),
+        _segment(table["foot"], rider.mass, abs(toe - heel), heel, (toe - heel) / abs(toe - heel)),
     )
     for body in linkage.architecture.bodies[2:]:
         length = design.link_lengths[body]
@@ -68,6 +65,15 @@ def inertias(design: Design) -> dict[str, Inertia]:
             joint = 0 if body == "coupler" else length  # the rocker joint in this body's frame
             bodies[body] = combine(bodies[body], _bar(joint, length * linkage.pedal_offset))
     return bodies
+
+
+def foot_points(design: Design) -> tuple[complex, complex, complex]:
+    """Ankle, heel and toe tip in the shank's frame, m; the boot holds the foot at 90 deg to the shank."""
+    to_ankle = complex(np.exp(1j * design.boot_angle))
+    sole, length = -1j * to_ankle, FOOT_LENGTH[design.rider.sex]  # toes towards the pedal
+    ankle = design.rider.shank * to_ankle
+    heel = ankle - ANKLE_FROM_HEEL * length * sole
+    return ankle, heel, heel + length * sole
 
 
 def _segment(segment: Segment, body_mass: float, length: float, start: complex, along: complex) -> Inertia:

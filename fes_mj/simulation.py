@@ -39,8 +39,9 @@ class Energy:
 class Simulation:
     """Whole measured turns; arrays have shape (steps,), sampled at the start of each step.
 
-    Dictionaries are by joint name ("knee", "hip"; with two legs "right_knee" ...), the loop ones by the name of the
-    cut joint ("pedal", "crank_pin"). A loop's force is complex, in the linkage's plane.
+    Dictionaries are by joint name ("hip", "knee", "crank", "rocker", "coupler"; with two legs "right_hip" ...; moments
+    only of hips and knees), the loop ones by the name of the cut joint ("pedal", "crank_pin"). A loop's force is
+    complex, in the linkage's plane.
     """
 
     design: Design
@@ -105,8 +106,8 @@ def simulate(
 
     column = {model.sensor(i).name: int(model.sensor(i).adr[0]) for i in range(model.nsensor)}
     rows, loops = run.sensors[:steps], [model.equality(i).name for i in range(model.neq)]
-    angle = {name: rows[:, column[f"{name}_angle"]] for name in drives}
-    speed = {name: run.sensors[:, column[f"{name}_speed"]] for name in ("crank", *drives)}
+    angle = {model.joint(i).name: rows[:, column[f"{model.joint(i).name}_angle"]] for i in range(model.njnt)}
+    speed = {name: run.sensors[:, column[f"{name}_speed"]] for name in angle}
     moment = {name: torque_map.moment(joint, angle[name], speed[name][:steps]) for name, joint in drives.items()}
     # the frame brakes the crank with this moment about +y, against its turning about -y
     crank_moment = rows[:, column["crank_torque"] + 1]
@@ -124,11 +125,11 @@ def simulate(
         legs=LEGS[legs],
         mass_scale=mass_scale,
         gravity=gravity,
-        crank_angle=rows[:, column["crank_angle"]],
+        crank_angle=angle["crank"],
         crank_speed=speed["crank"][:steps],
         crank_moment=crank_moment,
         joint_angle=angle,
-        joint_speed={name: speed[name][:steps] for name in drives},
+        joint_speed={name: values[:steps] for name, values in speed.items()},
         joint_moment=moment,
         loop_gap={loop: np.linalg.norm(rows[:, (at := column[f"{loop}_gap"]) : at + 3], axis=1) for loop in loops},
         loop_force={loop: run.forces[:, 3 * i] + 1j * run.forces[:, 3 * i + 2] for i, loop in enumerate(loops)},

@@ -75,8 +75,10 @@ class TorqueMap:
         """The same map for plain floats, (angle, rate) -> moment; twenty times faster for one value at a time."""
         table = self._tables[joint].tolist()
         source, scale = _INVERSES[joint](math, _acos_float), TABLE_SIZE / (2 * math.pi)
+        low, high = reference_ranges()[joint]
 
         def moment(angle: float, rate: float) -> float:
+            angle = low if angle < low else high if angle > high else angle
             position = source(angle, 1.0 if rate >= 0 else -1.0) * scale
             if position < 0:
                 position += TABLE_SIZE
@@ -92,6 +94,7 @@ def source_angle(joint: str, angle: Any, rate: Any) -> Any:
     angle: rad; beyond the reference's range its nearest end is used. rate: its sign is the direction, zero
     is extension. Returns rad from top dead centre in (-pi, 2 pi].
     """
+    angle = np.clip(angle, *reference_ranges()[joint])
     return _INVERSES[joint](np, _acos_array)(angle, np.where(np.asarray(rate) >= 0, 1.0, -1.0))
 
 
@@ -101,9 +104,21 @@ def joint_angles(motion: kinematics.Motion) -> dict[str, tuple[Any, Any]]:
 
 
 def reference_ranges() -> dict[str, tuple[float, float]]:
-    """Smallest and largest joint angle of the reference TRT, rad: beyond them the map has no data."""
-    angles = joint_angles(kinematics.solve(REFERENCE, np.linspace(0, 2 * np.pi, 36_000)))
-    return {joint: (float(angle.min()), float(angle.max())) for joint, (angle, _) in angles.items()}
+    """Smallest and largest joint angle of the reference TRT, rad: beyond them the map has no data.
+
+    The knee turns round where the crank lies in line with hip and crank centre, the hip where it does with the shank.
+    """
+    crank, thigh, shank = REFERENCE.linkage.crank, REFERENCE.rider.thigh, float(REFERENCE.knee_to_pedal)
+    frame, frame_angle = abs(REFERENCE.linkage.crank_centre), float(np.angle(REFERENCE.linkage.crank_centre))
+    at_hip = frame_angle % (2 * math.pi) - REFERENCE.linkage.seat_angle
+    knee = [_opposite(frame + sign * crank, thigh, shank) - float(REFERENCE.boot_angle) for sign in (-1, 1)]
+    hip = [at_hip - _opposite(shank + sign * crank, thigh, frame) for sign in (1, -1)]
+    return {"knee": (knee[0], knee[1]), "hip": (hip[0], hip[1])}
+
+
+def _opposite(side: float, first: float, second: float) -> float:
+    """Angle opposite to `side` in a triangle with the other sides `first` and `second` (law of cosines), rad."""
+    return math.acos((first**2 + second**2 - side**2) / (2 * first * second))
 
 
 def _acos_array(value: Any) -> Any:
@@ -113,7 +128,7 @@ def _acos_array(value: Any) -> Any:
 def _acos_float(value: float) -> float:
     try:
         return math.acos(value)
-    except ValueError:  # beyond the reference's range (or NaN, which stays out of range): its nearest end
+    except ValueError:  # a rounding error beyond an end of the range
         return 0.0 if value > 0 else math.pi
 
 

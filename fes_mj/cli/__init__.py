@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Sequence
 
@@ -9,6 +10,7 @@ from cyclopts import App, CycloptsError
 
 from fes_mj.cli.output import errors
 from fes_mj.errors import InputError, MissingPartError, UnstableError
+from fes_mj.headless import defer_gl
 
 AGREES, DISAGREES, BAD_INPUT, MISSING_PART, INTERRUPTED = 0, 1, 2, 3, 130
 
@@ -39,6 +41,11 @@ def run(arguments: Sequence[str] | None = None) -> int:
         return _fail(error, MISSING_PART)
     except UnstableError as error:
         return _fail(error, DISAGREES)
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # the reader left; nothing more to say
+        return DISAGREES
+    except OSError as error:
+        return _fail(f"{error.filename or 'output'}: {error.strerror}", BAD_INPUT)
     except KeyboardInterrupt:
         return _fail("interrupted; nothing was left half-written", INTERRUPTED)
 
@@ -50,4 +57,5 @@ def _fail(message: object, code: int) -> int:
 
 def main() -> None:
     """Entry point of the fes_mj command."""
+    defer_gl()
     sys.exit(run())

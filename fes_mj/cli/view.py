@@ -24,7 +24,7 @@ def view(design: str, /, *, options: RunOptions = _DEFAULTS) -> int:
         raise MissingPartError(
             "the viewer needs a screen and there is none; make a video instead: fes_mj simulate ... --render out.mp4"
         )
-    from fes_mj.render import show_viewer
+    from fes_mj import viewer
 
-    show_viewer(*loaded)
+    viewer.show(*loaded)
     return 0

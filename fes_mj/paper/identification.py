@@ -18,7 +18,7 @@ from fes_mj.design import Design, Linkage
 from fes_mj.paper.printed import Table1Row
 
 ROUNDING = 0.005  # m, Table 2 is rounded to 1 cm
-RANGE_TOLERANCE = 0.49  # deg, Table 1 is rounded to 1 deg; a little inside, so that rounding to 0.01 mm is safe
+RANGE_TOLERANCE = 0.49  # deg, Table 1 is rounded to 1 deg; a little inside, so that rounding the result is safe
 _STARTS = 6
 _SEED = 2022
 
@@ -87,8 +87,8 @@ def grashof_margin(linkage: Linkage) -> Any:
     return others[0] + others[1] - others[2] - linkage.crank
 
 
-def rounded(linkage: Linkage, digits: int = 5) -> Linkage:
-    """The linkage with its lengths rounded, by default to 0.01 mm."""
+def rounded(linkage: Linkage, digits: int = 6) -> Linkage:
+    """The linkage with its lengths rounded, by default to 1 um."""
     return unpack(linkage, np.round(pack(linkage), digits))
 
 

@@ -1,0 +1,164 @@
+"""What the model looks like: bodies drawn as massless geoms that touch nothing, named materials, a camera.
+
+The links, the pedal and the leg are drawn in layers beside each other, so that none hides another; the joints
+themselves all lie in one plane.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import mujoco
+import numpy as np
+
+from fes_mj import kinematics
+from fes_mj.design import BODIES, Design, Leg
+from fes_mj.segments import foot_points
+
+# Layers of one leg, m outwards from the plane of its joints. The linkage is drawn outside the leg, not between foot and
+# frame where a tricycle has it: there the leg would hide it from the side.
+LAYERS = {"frame": -0.13, "leg": -0.065, "coupler": 0.0, "crank": 0.025, "rocker": 0.05}
+PIN_END = 0.012  # m that a pin stands out on either side of what it joins
+LIMB_PIN_END = 0.07  # m, the same for the joints inside a leg
+
+_CAPSULE, _BOX = mujoco.mjtGeom.mjGEOM_CAPSULE, mujoco.mjtGeom.mjGEOM_BOX
+_CYLINDER = mujoco.mjtGeom.mjGEOM_CYLINDER
+
+
+class Part(NamedTuple):
+    """A default class of geoms and the material it wears."""
+
+    shape: mujoco.mjtGeom
+    size: tuple[float, float]  # m: radius of a capsule or cylinder; half width and half thickness of a bar
+    colour: tuple[float, float, float]  # RGB, each 0 to 1
+
+
+# Hip and knee are coloured as in the plots.
+PARTS = {
+    "thigh": Part(_CAPSULE, (0.065, 0), (0.80, 0.70, 0.60)),
+    "shank": Part(_CAPSULE, (0.048, 0), (0.88, 0.79, 0.69)),
+    "boot": Part(_CAPSULE, (0.052, 0), (0.27, 0.30, 0.35)),
+    "hip": Part(_CYLINDER, (0.028, 0), (0.85, 0.15, 0.75)),
+    "knee": Part(_CYLINDER, (0.028, 0), (0.05, 0.72, 0.80)),
+    "crank": Part(_BOX, (0.013, 0.006), (0.88, 0.49, 0.16)),
+    "rocker": Part(_BOX, (0.013, 0.006), (0.45, 0.42, 0.68)),
+    "coupler": Part(_BOX, (0.013, 0.006), (0.36, 0.58, 0.36)),
+    "pin": Part(_CYLINDER, (0.011, 0), (0.22, 0.23, 0.26)),
+    "chainring": Part(_CYLINDER, (0.075, 0), (0.36, 0.38, 0.42)),
+    "frame": Part(_CAPSULE, (0.018, 0), (0.64, 0.67, 0.70)),
+    "seat": Part(_BOX, (0.02, 0.16), (0.45, 0.48, 0.53)),
+}
+BACKREST = 0.45  # m
+SEAT_LENGTH = 0.25  # m
+SEAT_DEPTH = 0.12  # m from the hip down to the seat
+FIELD_OF_VIEW = 30.0  # deg, vertical
+ASPECT = 4 / 3  # the narrowest picture that still shows everything
+MARGIN = 0.14  # m around the joints, for the flesh, the boot and the seat
+
+
+def define_parts(spec: mujoco.MjSpec, parent: Any) -> None:
+    """A material and a default class of geoms, below `parent`, for every kind of part."""
+    for name, part in PARTS.items():
+        spec.add_material(name=name, rgba=(*part.colour, 1))
+        geom = spec.add_default(name, parent).geom
+        geom.type, geom.size, geom.material = part.shape, (*part.size, 0), name
+
+
+def draw(spec: mujoco.MjSpec, design: Design, legs: Sequence[Leg]) -> None:
+    """Give every body of the assembled model its geoms, and the model the camera `side`, which sees the whole turn."""
+    middle = float(np.mean([leg.lateral + leg.outwards * LAYERS["frame"] for leg in legs]))
+    for leg in legs:
+        _draw_limb(spec, design, leg)
+        _draw_links(spec, design, leg)
+        _draw_pins(spec, design, leg, middle)
+    _draw_frame(spec, design, middle)
+    _add_camera(spec, design)
+
+
+def _bar(
+    spec: mujoco.MjSpec, body: str, part: str, name: str, start: tuple[complex, float], end: tuple[complex, float]
+) -> None:
+    """A geom of the class `part` between two points of a body, each (in the plane, across it), m."""
+    (first, first_y), (second, second_y) = start, end
+    ends = (np.real(first), first_y, np.imag(first), np.real(second), second_y, np.imag(second))
+    spec.body(body).add_geom(
+        spec.find_default(part), name=name, fromto=[round(float(value), 4) + 0.0 for value in ends]
+    )
+
+
+def _draw_limb(spec: mujoco.MjSpec, design: Design, leg: Leg) -> None:
+    across = leg.outwards * LAYERS["leg"]
+    ankle, heel, toe = foot_points(design)
+    sole, radius = (toe - heel) / abs(toe - heel), PARTS["boot"].size[0]
+    for part, body, name, start, end in (
+        ("thigh", "thigh", "thigh", 0j, design.rider.thigh),
+        ("shank", "shank", "shank", 0j, ankle),
+        ("boot", "shank", "boot", heel + radius * sole, toe - radius * sole),
+        ("boot", "shank", "boot_shaft", 0.6 * ankle, ankle),
+    ):
+        _bar(spec, leg.prefix + body, part, leg.prefix + name, (start, across), (end, across))
+
+
+def _draw_links(spec: mujoco.MjSpec, design: Design, leg: Leg) -> None:
+    linkage = design.linkage
+    for body in linkage.architecture.bodies[2:]:
+        tip, owner, across = complex(design.link_lengths[body]), leg.prefix + body, leg.outwards * LAYERS[body]
+        if body == "crank":  # the legs share it: an arm each
+            tip, owner, across = tip * np.exp(-1j * leg.lag), "crank", leg.lateral + across
+        bars = {"": (0j, tip)}
+        if body == linkage.architecture.pedal_body != "crank":
+            pedal = tip * complex(linkage.pedal_offset)
+            # the coupler's pedal arm stands off it, so a third bar makes it a triangle; the rocker's lies in line
+            bars |= {"_pedal_arm": (0j, pedal), "_brace": (pedal, tip)} if body == "coupler" else {"": (0j, pedal)}
+        for suffix, (start, end) in bars.items():
+            _bar(spec, owner, body, f"{leg.prefix}{body}{suffix}_bar", (start, across), (end, across))
+
+
+def _draw_pins(spec: mujoco.MjSpec, design: Design, leg: Leg, middle: float) -> None:
+    """A pin at every joint, through the layers of the bodies it connects."""
+    layer = {body: leg.outwards * across for body, across in LAYERS.items()}
+    layer |= {"thigh": layer["leg"], "shank": layer["leg"], "frame": middle - leg.lateral}
+    for joint, pair in design.linkage.architecture.joints.items():
+        inside = joint in ("hip", "knee")
+        # drawn on the body that has the joint at its origin, or else at its tip
+        at_origin = next((body for body in pair if BODIES.get(body, ("",))[0] == joint), None)
+        body = at_origin or pair[0]
+        owner, point, plane = leg.prefix + body, 0j if at_origin else complex(design.link_lengths[body]), 0.0
+        if body == "crank":
+            owner, point, plane = "crank", point * np.exp(-1j * leg.lag), leg.lateral
+        ends = sorted(layer[side] for side in pair if not (inside and side == "frame"))
+        beyond, part = (LIMB_PIN_END, joint) if inside else (PIN_END, "pin")
+        near, far = plane + ends[0] - beyond, plane + ends[-1] + beyond
+        _bar(spec, owner, part, f"{leg.prefix}{joint}_pin", (point, near), (point, far))
+
+
+def _draw_frame(spec: mujoco.MjSpec, design: Design, middle: float) -> None:
+    """Seat, tube from it over the fixed pivots to the crank, and the chainring."""
+    linkage, back = design.linkage, np.exp(1j * design.linkage.seat_angle)
+    corner = SEAT_DEPTH * (0.5 - 1j)
+    for name, start, end in (
+        ("seat", corner - SEAT_LENGTH, corner),
+        ("backrest", corner, corner + BACKREST * back),
+    ):
+        _bar(spec, "tricycle", "seat", name, (start, middle), (end, middle))
+    tubes = {"seat_tube": (corner, linkage.ground), "boom": (linkage.ground, linkage.crank_centre)}
+    for name, (start, end) in tubes.items():
+        if start != end:  # a TRT's ground link ends at the crank
+            _bar(spec, "tricycle", "frame", name, (start, middle), (end, middle))
+    _bar(spec, "crank", "chainring", "chainring", (0j, middle - 0.003), (0j, middle + 0.003))
+
+
+def _add_camera(spec: mujoco.MjSpec, design: Design) -> None:
+    """From the rider's right, as wide as the turn; the rider looks to the right of the picture."""
+    points = kinematics.positions(design, kinematics.FULL_TURN)
+    ends = [BACKREST * np.exp(1j * design.linkage.seat_angle), *points.values()]
+    cloud = np.concatenate([np.ravel(value) for value in ends])
+    low = complex(cloud.real.min(), cloud.imag.min()) - MARGIN * (1 + 1j)
+    high = complex(cloud.real.max(), cloud.imag.max()) + MARGIN * (1 + 1j)
+    centre, size = (low + high) / 2, high - low
+    distance = max(size.imag, size.real / ASPECT) / 2 / math.tan(math.radians(FIELD_OF_VIEW) / 2)
+    camera = spec.body("tricycle").add_camera(name="side", fovy=FIELD_OF_VIEW)
+    camera.pos = [round(value, 3) for value in (centre.real, distance, centre.imag)]
+    camera.alt.type, camera.alt.xyaxes = mujoco.mjtOrientation.mjORIENTATION_XYAXES, (-1, 0, 0, 0, 0, 1)

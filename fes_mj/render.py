@@ -1,0 +1,146 @@
+"""The video of a cross-check: the moving legs and linkage beside the crank power over the turn."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from fes_mj import kinematics
+from fes_mj.crosscheck import CrossCheck
+from fes_mj.design import BODIES
+from fes_mj.errors import MissingPartError
+from fes_mj.files import replacing
+from fes_mj.headless import use_offscreen_gl
+from fes_mj.mjcf import build_mjcf
+from fes_mj.simulation import Simulation
+
+HEIGHT, SCENE_WIDTH, PLOT_WIDTH = 720, 720, 560  # pixels
+FRAMES_PER_SECOND = 30
+FRAMES = 120  # a turn: slow motion of four seconds
+REPEATS = 2  # turns shown
+# Seen from the rider's right, a little from above: the rider faces right, the crank turns clockwise.
+AZIMUTH, ELEVATION, FIELD_OF_VIEW = -97.0, -7.0, 24.0  # deg
+LABEL_HEIGHT = 40  # pixels from the upper or lower edge to a row of names
+LABEL_COLOUR, LEADER_COLOUR = (20, 24, 32), (90, 96, 108)
+Picture = NDArray[np.uint8]
+
+
+def render_video(result: CrossCheck, path: Path, quiet: bool = False) -> None:
+    """Write an H.264 video of one measured turn, shown REPEATS times, to `path`.
+
+    Raises MissingPartError if OpenGL or a package of the extra "video" is missing.
+    """
+    try:
+        import imageio_ffmpeg
+        import mediapy
+        from rich.console import Console
+        from rich.progress import Progress
+
+        from fes_mj.power_panel import PowerPanel
+    except ImportError as error:
+        raise MissingPartError(
+            f"no video: the package {error.name} is missing; install `pip install 'fes-mj[video]'`"
+        ) from None
+    use_offscreen_gl()
+    mediapy.set_ffmpeg(imageio_ffmpeg.get_ffmpeg_exe())
+    run = result.simulation
+    shown = np.linspace(0, len(run.crank_angle) // run.turns, FRAMES, endpoint=False).astype(int)
+    panel, shape = PowerPanel(result, PLOT_WIDTH, HEIGHT), (HEIGHT, SCENE_WIDTH + PLOT_WIDTH)
+    with Progress(console=Console(stderr=True), transient=True, disable=quiet) as progress, replacing(path) as beside:
+        frames = [
+            np.hstack([scene, panel.frame(step)])
+            for step, scene in progress.track(
+                zip(shown, scenes(run, shown), strict=True), total=FRAMES, description="rendering"
+            )
+        ]
+        with mediapy.VideoWriter(beside, shape, fps=FRAMES_PER_SECOND, crf=20) as writer:
+            for frame in frames * REPEATS:
+                writer.add_image(frame)
+
+
+def scenes(run: Simulation, steps: NDArray[np.int64]) -> Iterator[Picture]:
+    """Labelled pictures of the simulated model at the given steps, shape (HEIGHT, SCENE_WIDTH, 3)."""
+    spec = build_mjcf(run.design, cadence=run.cadence, timestep=run.timestep, legs=len(run.legs))
+    spec.visual.global_.offwidth, spec.visual.global_.offheight = SCENE_WIDTH, HEIGHT
+    spec.visual.global_.fovy = FIELD_OF_VIEW
+    model = spec.compile()
+    data, camera, labels = mujoco.MjData(model), _camera(run), _Labels(run)
+    addresses = {name: model.joint(name).qposadr[0] for name in run.joint_angle}
+    with mujoco.Renderer(model, HEIGHT, SCENE_WIDTH) as renderer:
+        for step in steps:
+            for name, address in addresses.items():
+                data.qpos[address] = run.joint_angle[name][step]
+            mujoco.mj_kinematics(model, data)
+            mujoco.mj_comPos(model, data)
+            mujoco.mj_camlight(model, data)
+            renderer.update_scene(data, camera)
+            yield labels.draw(renderer.render(), data, renderer.scene.camera[0])
+
+
+def _camera(run: Simulation) -> mujoco.MjvCamera:
+    """A fixed camera that sees every joint over the whole turn, with room for the names."""
+    points = kinematics.positions(run.design, kinematics.FULL_TURN).values()
+    everything = np.concatenate([np.atleast_1d(point) for point in points])
+    low, high = (complex(f(everything.real), f(everything.imag)) for f in (np.min, np.max))
+    centre, size = (low + high) / 2, max((high - low).real, (high - low).imag) + 0.3
+    camera = mujoco.MjvCamera()
+    camera.lookat = (centre.real, 0.0, centre.imag)
+    camera.distance = size / 2 / np.tan(np.radians(FIELD_OF_VIEW / 2))
+    camera.azimuth, camera.elevation = AZIMUTH, ELEVATION
+    return camera
+
+
+class _Labels:
+    """Names in fixed places above and below the linkage, each with a line to its moving part."""
+
+    def __init__(self, run: Simulation) -> None:
+        from matplotlib import font_manager
+        from PIL import ImageFont
+
+        self._font = ImageFont.truetype(font_manager.findfont("DejaVu Sans"), 20)
+        self._prefix = run.legs[0].prefix
+        points = kinematics.positions(run.design, kinematics.FULL_TURN)
+
+        def forward(part: str) -> float:
+            """Mean position of a part, to the right in the picture: names in this order cross few lines."""
+            ends = (part, part) if part in points else BODIES[part]
+            return -float(np.mean([np.mean(points[end]).real for end in ends]))
+
+        self._above = sorted(("thigh", "shank"), key=forward)
+        self._below = sorted((*run.design.linkage.architecture.bodies[2:], "pedal"), key=forward)
+
+    def _targets(self, data: mujoco.MjData) -> dict[str, NDArray[np.float64]]:
+        """Where each name points, m: a body's centre of mass, or the pedal."""
+        targets = {"pedal": data.site(f"{self._prefix}shank_pedal").xpos}
+        for body in {*self._above, *self._below} - {"pedal"}:
+            targets[body] = data.body(body if body == "crank" else self._prefix + body).xipos
+        return targets
+
+    def draw(self, picture: Picture, data: mujoco.MjData, camera: Any) -> Picture:
+        """The picture with the names written on it."""
+        from PIL import Image, ImageDraw
+
+        image = Image.fromarray(picture)
+        draw = ImageDraw.Draw(image)
+        targets = self._targets(data)
+        for row, height in ((self._above, LABEL_HEIGHT), (self._below, HEIGHT - LABEL_HEIGHT)):
+            for place, name in enumerate(row):
+                spot = ((place + 0.5) * SCENE_WIDTH / len(row), height)
+                draw.line([spot, _project(targets[name], camera)], fill=LEADER_COLOUR, width=2)
+                draw.text(
+                    spot, name, font=self._font, fill=LABEL_COLOUR, anchor="mm", stroke_width=6, stroke_fill="white"
+                )
+        return np.asarray(image)
+
+
+def _project(point: NDArray[np.float64], camera: Any) -> tuple[float, float]:
+    """Pixel of a point in the picture of an MjvGLCamera."""
+    forward, up = np.array(camera.forward), np.array(camera.up)
+    offset = point - np.array(camera.pos)
+    scale = HEIGHT / 2 / np.tan(np.radians(FIELD_OF_VIEW / 2)) / (offset @ forward)
+    return SCENE_WIDTH / 2 + scale * (offset @ np.cross(forward, up)), HEIGHT / 2 - scale * (offset @ up)

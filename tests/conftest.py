@@ -1,0 +1,29 @@
+"""Designs and moments that many tests share."""
+
+import numpy as np
+import pytest
+
+import fes_mj
+from fes_mj.design_file import CATALOGUE
+from fes_mj.torque import GROUPS
+
+
+@pytest.fixture(params=CATALOGUE)
+def design(request: pytest.FixtureRequest) -> fes_mj.Design:
+    """Each catalogued design in turn."""
+    return fes_mj.load_design(request.param)
+
+
+@pytest.fixture(params=GROUPS)
+def moments(request: pytest.FixtureRequest) -> fes_mj.JointMoments:
+    """The recovered moments of each group in turn."""
+    return fes_mj.load_moments(request.param)
+
+
+@pytest.fixture
+def smooth_moments() -> fes_mj.JointMoments:
+    """Moments that nobody fitted to anything."""
+    angle = np.radians(np.arange(0.0, 360.0, 0.5))
+    return fes_mj.JointMoments(
+        "smooth", angle, 9 + 11 * np.cos(angle - 1.2) + 2 * np.sin(3 * angle), 7 * np.sin(angle + 0.4)
+    )
