@@ -96,7 +96,7 @@ class Problem:
             Constraint("ankle_to_pedal", "m", False, limits.foot_max, 0.01),
             Constraint("pedal_arm", "m", True, 0.0, 0.01),
             Constraint("crank_shortest", "m", True, 0.0, 0.01),
-            Constraint("grashof", "m", True, 0.0, 0.01),
+            Constraint("grashof", "m", True, limits.grashof_min, 0.01),
             Constraint("rocker_pivot_inside", "m", True, 0.0, 0.01),
             Constraint("crank_centre_inside", "m", True, 0.0, 0.01),
         )

@@ -16,7 +16,7 @@ from fes_mj.errors import InputError
 DEFAULT = Path(__file__).parents[1] / "data" / "optimization.toml"
 VARIABLES = ("R1x", "R1y", "R2", "R6", "R7x", "R7y", "R8", "R9", "R10", "gear_ratio")
 _PAIRS = ("knee_deg", "hip_deg")
-_LIMITS = ("crank_min", "rocker_min", "foot_max", *_PAIRS, "joint_rounding_deg", "gear_ratio_max")
+_LIMITS = ("crank_min", "rocker_min", "foot_max", "grashof_min", *_PAIRS, "joint_rounding_deg", "gear_ratio_max")
 _SEARCHED = ("R2", "R6", "R8", "R9", "R10", "gear_ratio")
 
 
@@ -33,6 +33,7 @@ class Limits:
     crank_min: float
     rocker_min: float
     foot_max: float
+    grashof_min: float
     knee_deg: tuple[float, float]
     hip_deg: tuple[float, float]
     joint_rounding_deg: float
