@@ -93,16 +93,23 @@ def simulate(
     legs: int = 1,
     mass_scale: float = 1.0,
     gravity: float = GRAVITY,
+    compiled: bool = False,
 ) -> Simulation:
     """Run whole turns of the model of build_mjcf (same arguments) under the torque map of `moments`.
 
-    Raises AssemblyError if the linkage does not close, UnstableError if the integration breaks down.
+    compiled: step in machine code, which pays from the second simulation of a process on. Raises AssemblyError if the
+    linkage does not close, UnstableError if the integration breaks down, MissingPartError if numba is needed and absent.
     """
     cadence = design.linkage.cadence if cadence is None else cadence
     spec = build_mjcf(design, cadence=cadence, timestep=timestep, legs=legs, mass_scale=mass_scale, gravity=gravity)
     model, steps = spec.compile(), turns * steps_per_turn(cadence, timestep)
     drives, torque_map = joint_drives(LEGS[legs]), TorqueMap(moments)
-    run = run_steps(model, {name: torque_map.feedback(joint) for name, joint in drives.items()}, steps)
+    if compiled:
+        from fes_mj.compiled import compiled_loop
+
+        run = run_loop(model, compiled_loop(torque_map, drives), steps)
+    else:
+        run = run_steps(model, {name: torque_map.feedback(joint) for name, joint in drives.items()}, steps)
 
     column = {model.sensor(i).name: int(model.sensor(i).adr[0]) for i in range(model.nsensor)}
     rows, loops = run.sensors[:steps], [model.equality(i).name for i in range(model.neq)]
@@ -156,44 +163,56 @@ class Run(NamedTuple):
     end_energy: tuple[float, float]
 
 
+# Steps a model so many times; gives the sensor rows and the constraint forces at the start of each step.
+Loop = Callable[[mujoco.MjModel, mujoco.MjData, int], tuple[NDArray[np.float64], NDArray[np.float64]]]
+
+
 def run_steps(model: mujoco.MjModel, feedback: dict[str, Callable[[float, float], float]], steps: int) -> Run:
     """Step the model from its keyframe; `feedback` maps a joint's angle and speed to the motor of the same name."""
-    data = mujoco.MjData(model)
-    mujoco.mj_resetDataKeyframe(model, data, 0)
-    # plain floats through memory views and rows as bytes cost half of numpy scalars and row assignment
-    qpos, qvel = memoryview(data.qpos), memoryview(data.qvel)
-    ctrl: Any = memoryview(data.ctrl)
-    drives = [
-        (int(model.actuator(name).id), int(model.joint(name).qposadr[0]), int(model.joint(name).dofadr[0]), moment)
-        for name, moment in feedback.items()
-    ]
 
-    def advance(count: int) -> Run:
-        start, step, read = _energy(model, data), mujoco.mj_step, data.sensordata.tobytes
-        sensors, forces = [], []
+    def loop(model: mujoco.MjModel, data: mujoco.MjData, count: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        # plain floats through memory views and rows as bytes cost half of numpy scalars and row assignment
+        qpos, qvel = memoryview(data.qpos), memoryview(data.qvel)
+        ctrl: Any = memoryview(data.ctrl)
+        drives = [(*drive_addresses(model, name), moment) for name, moment in feedback.items()]
+        step, read, sensors, forces = mujoco.mj_step, data.sensordata.tobytes, [], []
         for _ in range(count):
             for actuator, position, speed, moment in drives:
                 ctrl[actuator] = moment(qpos[position], qvel[speed])
             step(model, data)
             sensors.append(read())
             forces.append(data.efc_force.tobytes())
-        if any(warning.number for warning in data.warning):
-            raise UnstableError(
-                f"{model.names[: model.names.index(0)].decode()}: the simulation became unstable "
-                f"with a time step of {1e3 * model.opt.timestep:.3g} ms; give a smaller --timestep"
-            )
-        end = _energy(model, data)
-        mujoco.mj_forward(model, data)
-        sensors.append(read())
-        return Run(_matrix(sensors), _matrix(forces), start, end)
+        return _matrix(sensors), _matrix(forces)
 
+    return run_loop(model, loop, steps)
+
+
+def drive_addresses(model: mujoco.MjModel, name: str) -> tuple[int, int, int]:
+    """Index of the motor of a joint in ctrl, of the joint in qpos and in qvel."""
+    joint = model.joint(name)
+    return int(model.actuator(name).id), int(joint.qposadr[0]), int(joint.dofadr[0])
+
+
+def run_loop(model: mujoco.MjModel, loop: Loop, steps: int) -> Run:
+    """Pre-roll from the keyframe, then record so many steps of `loop`. Raises UnstableError."""
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
     previous = mujoco.get_mju_user_warning()
     mujoco.set_mju_user_warning(lambda _: None)  # MuJoCo would write MUJOCO_LOG.TXT into the user's folder
     try:
-        advance(PRE_ROLL)
-        return advance(steps)
+        loop(model, data, PRE_ROLL)
+        start = _energy(model, data)
+        sensors, forces = loop(model, data, steps)
     finally:
         mujoco.set_mju_user_warning(previous)
+    if any(warning.number for warning in data.warning):
+        raise UnstableError(
+            f"{model.names[: model.names.index(0)].decode()}: the simulation became unstable "
+            f"with a time step of {1e3 * model.opt.timestep:.3g} ms; give a smaller --timestep"
+        )
+    end = _energy(model, data)
+    mujoco.mj_forward(model, data)
+    return Run(np.vstack([sensors, data.sensordata]), forces, start, end)
 
 
 def _matrix(rows: list[bytes]) -> NDArray[np.float64]:

@@ -24,6 +24,7 @@ _COMMANDS = {
     "simulate": "Simulate a design in MuJoCo and compare its crank power with statics.",
     "static": "Mean crank power of a design by statics, without MuJoCo.",
     "optimize": "Find linkages with more crank power, within the paper's limits, and simulate them.",
+    "sweep": "Evaluate many designs, riders, cadences and moments; resumes where it was stopped.",
     "export": "Write the MJCF model of a design, for other tools.",
     "view": "Watch a design run in MuJoCo's interactive viewer.",
 }
