@@ -73,7 +73,7 @@ def _summary(sweep: Sweep, before: int, seconds: float) -> dict[str, Any]:
     best = None
     if turning:
         power = table["power_mean_W"]
-        best = table.slice(pc.index(power, pc.max(pc.if_else(pc.is_nan(power), None, power))).as_py(), 1).to_pylist()[0]
+        best = table.slice(pc.index(power, pc.max(power)).as_py(), 1).to_pylist()[0]
     return {
         "folder": str(sweep.folder),
         "points": table.num_rows,

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple, TypeVar
 from fes_mj.errors import InputError, UnstableError, import_extra
 
 Task, Outcome = TypeVar("Task"), TypeVar("Outcome")
-_PATIENCE = "10s"  # for a scheduler to answer
+_PATIENCE = "5s"  # for a scheduler to answer
 
 
 class Workers(NamedTuple):

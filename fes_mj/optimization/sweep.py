@@ -68,7 +68,9 @@ class Sweep:
         missing = [chunk for chunk in range(self.study.chunks) if chunk not in finished]
         for index, columns in run_tasks(partial(evaluate, self.study), missing, workers):
             with replacing(self.path(missing[index])) as temporary:
-                parquet.write_table(arrow.table(columns), temporary)
+                # NaN, for what could not be computed, becomes null
+                arrays = {name: arrow.array(column, from_pandas=True) for name, column in columns.items()}
+                parquet.write_table(arrow.table(arrays), temporary)
             if progress:
                 progress(len(columns["point"]))
 
