@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fes_mj.errors import import_extra
-from fes_mj.simulation import Loop, drive_addresses
+from fes_mj.simulation import FORCE_EVERY, Loop, drive_addresses
 from fes_mj.torque import JOINTS, TorqueMap, scalar_map
 
 
@@ -31,7 +31,7 @@ def compiled_loop(torque_map: TorqueMap, drives: dict[str, str]) -> Loop:
         addresses = np.array([drive_addresses(model, name) for name in drives])
         mujoco.mj_forward(model, data)  # makes the constraints, whose number and place in memory then stay
         forces = data.efc_force
-        sensor_rows, force_rows = np.empty((count, model.nsensordata)), np.empty((count, len(forces)))
+        sensor_rows, force_rows = np.empty((count, model.nsensordata)), np.empty((-(-count // FORCE_EVERY), len(forces)))
         state = (data.qpos, data.qvel, data.ctrl, data.sensordata, forces)
         advance(model._address, data._address, addresses, kinds, *tables, *state, sensor_rows, force_rows)
         if data.efc_force.ctypes.data != forces.ctypes.data:
@@ -78,7 +78,8 @@ def _advance() -> Callable[..., None]:
                     ctrl[actuator] = hip_map(hip_table, qpos[position], qvel[speed])
             step(model, data)
             sensor_rows[row] = sensors
-            force_rows[row] = forces
+            if not row % FORCE_EVERY:
+                force_rows[row // FORCE_EVERY] = forces
 
     return advance
 

@@ -77,8 +77,8 @@ def _write_facts(figure: Any, result: CrossCheck) -> None:
         0.05, 0.925, f"joint moments {run.moments.name.upper()}, {rpm:.1f} rpm, {legs}", size=11, color="#444a55"
     )
     facts = (
-        ("mean power, dynamic", f"{run.power_mean:.2f} W a leg", DYNAMIC),
-        ("mean power, quasi-static", f"{static.power_mean:.2f} W a leg", STATIC),
+        ("mean power, dynamic", f"{run.power_mean:.3f} W a leg", DYNAMIC),
+        ("mean power, quasi-static", f"{static.power_mean:.3f} W a leg", STATIC),
         ("difference", f"{100 * result.relative_difference:+.4f} %", "black"),
         ("largest loop gap", f"{1e6 * run.loop_gap_max:.1f} µm", "black"),
     )

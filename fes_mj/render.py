@@ -25,7 +25,8 @@ FRAMES = 120  # a turn: slow motion of four seconds
 REPEATS = 2  # turns shown
 # Seen from the rider's right, a little from above: the rider faces right, the crank turns clockwise.
 AZIMUTH, ELEVATION, FIELD_OF_VIEW = -97.0, -7.0, 24.0  # deg
-LABEL_HEIGHT = 40  # pixels from the upper or lower edge to a row of names
+MARGIN = 0.5  # m around the joints, for flesh, seat and names
+LABEL_CLEARANCE, LABEL_SPACING = 0.22, 0.26  # m: of the rows of names from the linkage, of the names in a row
 LABEL_COLOUR, LEADER_COLOUR = (20, 24, 32), (90, 96, 108)
 Picture = NDArray[np.uint8]
 
@@ -68,6 +69,9 @@ def scenes(run: Simulation, steps: NDArray[np.int64]) -> Iterator[Picture]:
     spec = build_mjcf(run.design, cadence=run.cadence, timestep=run.timestep, legs=len(run.legs))
     spec.visual.global_.offwidth, spec.visual.global_.offheight = SCENE_WIDTH, HEIGHT
     spec.visual.global_.fovy = FIELD_OF_VIEW
+    spec.visual.headlight.ambient, spec.visual.headlight.diffuse = [0.55] * 3, [0.5] * 3
+    sky = spec.add_texture(name="sky", type=mujoco.mjtTexture.mjTEXTURE_SKYBOX, width=64, height=64)
+    sky.builtin, sky.rgb1, sky.rgb2 = mujoco.mjtBuiltin.mjBUILTIN_GRADIENT, [1, 1, 1], [0.86, 0.89, 0.93]
     model = spec.compile()
     data, camera, labels = mujoco.MjData(model), _camera(run), _Labels(run)
     addresses = {name: model.joint(name).qposadr[0] for name in run.joint_angle}
@@ -87,7 +91,7 @@ def _camera(run: Simulation) -> mujoco.MjvCamera:
     points = kinematics.positions(run.design, kinematics.FULL_TURN).values()
     everything = np.concatenate([np.atleast_1d(point) for point in points])
     low, high = (complex(f(everything.real), f(everything.imag)) for f in (np.min, np.max))
-    centre, size = (low + high) / 2, max((high - low).real, (high - low).imag) + 0.3
+    centre, size = (low + high) / 2, max((high - low).real, (high - low).imag) + MARGIN
     camera = mujoco.MjvCamera()
     camera.lookat = (centre.real, 0.0, centre.imag)
     camera.distance = size / 2 / np.tan(np.radians(FIELD_OF_VIEW / 2))
@@ -106,18 +110,26 @@ class _Labels:
         self._prefix = run.legs[0].prefix
         points = kinematics.positions(run.design, kinematics.FULL_TURN)
 
-        def forward(part: str) -> float:
-            """Mean position of a part, to the right in the picture: names in this order cross few lines."""
-            ends = (part, part) if part in points else BODIES[part]
-            return -float(np.mean([np.mean(points[end]).real for end in ends]))
+        def home(part: str) -> complex:
+            """Mean position of a part over the turn, m."""
+            return complex(np.mean([np.mean(points[end]) for end in BODIES.get(part, (part, part))]))
 
-        self._above = sorted(("thigh", "shank"), key=forward)
-        self._below = sorted((*run.design.linkage.architecture.bodies[2:], "pedal"), key=forward)
+        everything = np.concatenate([np.atleast_1d(point).ravel() for point in points.values()]).imag
+        rows = {
+            everything.max() + LABEL_CLEARANCE: ("thigh", "shank"),
+            everything.min() - LABEL_CLEARANCE: (*run.design.linkage.architecture.bodies[2:], "pedal"),
+        }
+        self._spots = {}  # m, as points of the scene: in the order of the parts, so that few lines cross
+        for height, parts in rows.items():
+            middle = np.mean([home(part).real for part in parts])
+            for place, part in enumerate(sorted(parts, key=lambda part: home(part).real)):
+                across = middle + (place - (len(parts) - 1) / 2) * LABEL_SPACING
+                self._spots[part] = np.array([across, 0.0, height])
 
     def _targets(self, data: mujoco.MjData) -> dict[str, NDArray[np.float64]]:
         """Where each name points, m: a body's centre of mass, or the pedal."""
         targets = {"pedal": data.site(f"{self._prefix}shank_pedal").xpos}
-        for body in {*self._above, *self._below} - {"pedal"}:
+        for body in self._spots.keys() - {"pedal"}:
             targets[body] = data.body(body if body == "crank" else self._prefix + body).xipos
         return targets
 
@@ -127,14 +139,10 @@ class _Labels:
 
         image = Image.fromarray(picture)
         draw = ImageDraw.Draw(image)
-        targets = self._targets(data)
-        for row, height in ((self._above, LABEL_HEIGHT), (self._below, HEIGHT - LABEL_HEIGHT)):
-            for place, name in enumerate(row):
-                spot = ((place + 0.5) * SCENE_WIDTH / len(row), height)
-                draw.line([spot, _project(targets[name], camera)], fill=LEADER_COLOUR, width=2)
-                draw.text(
-                    spot, name, font=self._font, fill=LABEL_COLOUR, anchor="mm", stroke_width=6, stroke_fill="white"
-                )
+        for name, target in self._targets(data).items():
+            spot = _project(self._spots[name], camera)
+            draw.line([spot, _project(target, camera)], fill=LEADER_COLOUR, width=2)
+            draw.text(spot, name, font=self._font, fill=LABEL_COLOUR, anchor="mm", stroke_width=6, stroke_fill="white")
         return np.asarray(image)
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 pytest.importorskip("mediapy")
 
@@ -17,12 +18,21 @@ from fes_mj import headless
 from fes_mj.cli import run
 
 
-def frames_of(path: Path) -> tuple[dict, list[np.ndarray]]:
+def frames_of(path: Path) -> tuple[str, NDArray[np.uint8]]:
     """What ffmpeg says of a video, and its frames."""
-    reader = imageio_ffmpeg.read_frames(str(path))
-    about = next(reader)
-    width, height = about["size"]
-    return about, [np.frombuffer(frame, np.uint8).reshape(height, width, 3) for frame in reader]
+    ffmpeg = [
+        imageio_ffmpeg.get_ffmpeg_exe(),
+        "-hide_banner",
+        "-i",
+        str(path),
+        "-f",
+        "rawvideo",
+        "-pix_fmt",
+        "rgb24",
+        "-",
+    ]
+    done = subprocess.run(ffmpeg, capture_output=True, check=True)
+    return done.stderr.decode(), np.frombuffer(done.stdout, np.uint8).reshape(-1, 720, 1280, 3)
 
 
 def test_the_video_moves(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -30,9 +40,8 @@ def test_the_video_moves(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
     path = tmp_path / "out.mp4"
     assert run(["simulate", "r1", "-q", "--render", str(path)]) == 0
     about, frames = frames_of(path)
-    assert about["codec"] == "h264"
-    assert about["pix_fmt"].startswith("yuv420p")  # what browsers play
-    assert about["size"] == (1280, 720)
+    assert "Video: h264" in about
+    assert "yuv420p" in about  # what browsers play
     assert len(frames) == 12
     scene, panel = frames[0][:, :720], frames[0][:, 720:]
     moved = frames[3]

@@ -1,0 +1,48 @@
+# `make demo` and `make test` are all the set-up there is; both first create .venv with every pinned dependency.
+PYTHON ?= python3
+VENV ?= .venv
+BIN = $(VENV)/bin
+EXTRAS = video,test,lint
+
+.PHONY: demo test test-long lint format benchmark catalogue clean
+
+demo: $(VENV)/.ready
+	mkdir -p demo
+	$(BIN)/fes_mj simulate d1 --render demo/d1.mp4 --out demo
+	@echo "Look at demo/d1.mp4; the numbers are in demo/d1-p1p2.json and demo/d1-p1p2.csv, the model in demo/d1-p1p2.xml."
+
+test: $(VENV)/.ready
+	$(BIN)/python -m pytest -m "not long"
+
+test-long: $(VENV)/.ready
+	$(BIN)/python -m pytest -m long
+
+lint: $(VENV)/.ready
+	$(BIN)/ruff format --check .
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+
+format: $(VENV)/.ready
+	$(BIN)/ruff format .
+	$(BIN)/ruff check --fix .
+
+benchmark: $(VENV)/.ready
+	$(BIN)/pip install --quiet -c constraints.txt -e '.[benchmark]'
+	$(BIN)/python tools/benchmark.py
+
+# What the package ships as data: the identified designs and the recovered moments.
+catalogue: $(VENV)/.ready
+	$(BIN)/python tools/make_catalogue.py
+	$(BIN)/python tools/reconstruct_moments.py
+
+$(VENV)/.ready: pyproject.toml constraints.txt
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
+		{ echo "Python 3.11 or newer is needed; name one with make PYTHON=python3.12 ..."; exit 1; }
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/pip install --quiet -c constraints.txt -e '.[$(EXTRAS)]'
+	# OpenGL for machines without any: only the library inside this wheel is used, so its own dependencies stay out
+	-@[ "$$(uname -sm)" != "Linux x86_64" ] || $(BIN)/pip install --quiet --no-deps -c constraints.txt lavavu-osmesa
+	touch $@
+
+clean:
+	rm -rf $(VENV) demo

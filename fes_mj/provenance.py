@@ -1,0 +1,26 @@
+"""Where a result comes from: versions, date, command."""
+
+from __future__ import annotations
+
+import hashlib
+import platform
+import sys
+from collections.abc import Iterable
+from datetime import UTC, datetime
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+
+def provenance(inputs: Iterable[Path] = ()) -> dict[str, Any]:
+    """Versions, date (UTC), command line without paths, and the SHA-256 of every input file by name."""
+    return {
+        "fes_mj": version("fes-mj"),
+        "python": platform.python_version(),
+        "mujoco": version("mujoco"),
+        "numpy": version("numpy"),
+        "scipy": version("scipy"),
+        "date": datetime.now(UTC).isoformat(timespec="seconds"),
+        "command": " ".join([Path(sys.argv[0]).name, *sys.argv[1:]]),
+        "inputs": {path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in inputs},
+    }
