@@ -31,7 +31,10 @@ def compiled_loop(torque_map: TorqueMap, drives: dict[str, str]) -> Loop:
         addresses = np.array([drive_addresses(model, name) for name in drives])
         mujoco.mj_forward(model, data)  # makes the constraints, whose number and place in memory then stay
         forces = data.efc_force
-        sensor_rows, force_rows = np.empty((count, model.nsensordata)), np.empty((-(-count // FORCE_EVERY), len(forces)))
+        sensor_rows, force_rows = (
+            np.empty((count, model.nsensordata)),
+            np.empty((-(-count // FORCE_EVERY), len(forces))),
+        )
         state = (data.qpos, data.qvel, data.ctrl, data.sensordata, forces)
         advance(model._address, data._address, addresses, kinds, *tables, *state, sensor_rows, force_rows)
         if data.efc_force.ctypes.data != forces.ctypes.data:
@@ -87,4 +90,6 @@ def _advance() -> Callable[..., None]:
 def _library() -> Path:
     """MuJoCo's shared library, beside its Python bindings."""
     folder = Path(mujoco.__file__).parent
-    return next(path for pattern in ("libmujoco*.so*", "libmujoco*.dylib", "mujoco.dll") for path in folder.glob(pattern))
+    return next(
+        path for pattern in ("libmujoco*.so*", "libmujoco*.dylib", "mujoco.dll") for path in folder.glob(pattern)
+    )

@@ -51,11 +51,13 @@ def build_mjcf(
     mass_scale: float = 1.0,
     gravity: float = GRAVITY,
     variant: str = "sites",
+    drawn: bool = True,
 ) -> mujoco.MjSpec:
     """The model of a design at a cadence (rad/s, by default Eq. 16), assembled, with a keyframe at crank angle 0.
 
     timestep: s; rounded so that a turn is a whole number of steps. mass_scale: factor on every mass and inertia.
-    variant: loops anchored at "sites" or on "bodies". Raises AssemblyError if the linkage does not close.
+    variant: loops anchored at "sites" or on "bodies". drawn: with geoms, which are pictures only and take a fifth of a
+    step. Raises AssemblyError if the linkage does not close.
     """
     kinematics.require_assembly(design)
     cadence = design.linkage.cadence if cadence is None else cadence
@@ -78,7 +80,8 @@ def build_mjcf(
         start = _start_state(design, leg, cadence)
         _add_leg(spec, root, design, leg, masses, start, variant)
         state |= {leg.prefix + joint: values for joint, values in start.items()}
-    appearance.draw(spec, design, LEGS[legs])
+    if drawn:
+        appearance.draw(spec, design, LEGS[legs])
     _add_drives(spec, LEGS[legs])
     _add_keyframe(spec, state)
     return spec

@@ -98,11 +98,13 @@ def simulate(
 ) -> Simulation:
     """Run whole turns of the model of build_mjcf (same arguments) under the torque map of `moments`.
 
-    compiled: step in machine code, which pays from the second simulation of a process on. Raises AssemblyError if the
-    linkage does not close, UnstableError if the integration breaks down, MissingPartError if numba is needed and absent.
+    compiled: step in machine code, which pays beyond some hundred turns. Raises AssemblyError if the linkage does not
+    close, UnstableError if the integration breaks down, MissingPartError if compiled and numba is not there.
     """
     cadence = design.linkage.cadence if cadence is None else cadence
-    spec = build_mjcf(design, cadence=cadence, timestep=timestep, legs=legs, mass_scale=mass_scale, gravity=gravity)
+    spec = build_mjcf(
+        design, cadence=cadence, timestep=timestep, legs=legs, mass_scale=mass_scale, gravity=gravity, drawn=False
+    )
     model, steps = spec.compile(), turns * steps_per_turn(cadence, timestep)
     drives, torque_map = joint_drives(LEGS[legs]), TorqueMap(moments)
     if compiled:

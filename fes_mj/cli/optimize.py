@@ -142,7 +142,9 @@ def _check(
     if not 0 <= caution <= 10:
         raise InputError(f"--caution is {caution:g}; it must be from 0 to 10 standard deviations")
     if caution and (moments or method == "nsga-ii"):
-        raise InputError("--caution needs the error bars of one group's recovered moments: not with --moments or nsga-ii")
+        raise InputError(
+            "--caution needs the error bars of one group's recovered moments: not with --moments or nsga-ii"
+        )
     if smooth and method != "nsga-ii":
         raise InputError("--smooth is an objective of its own: it needs --method nsga-ii")
     if out:
@@ -171,7 +173,8 @@ def _problem(
     own = joint_speeds(rival, table)
     # a hair above, so that the design itself is within its own limits
     knee, hip = (
-        own[joint] * (1 + 1e-9) if given is None else given for joint, given in zip(("knee", "hip"), speeds, strict=True)
+        own[joint] * (1 + 1e-9) if given is None else given
+        for joint, given in zip(("knee", "hip"), speeds, strict=True)
     )
     baseline = cycles(rival, table).work[0] * rival.linkage.cadence / (2 * math.pi)
     return Problem(template, table, limits, knee, hip, caution, baseline)
@@ -275,7 +278,9 @@ def _print(winner: Winner, task: Problem, x: Any, method: str, evaluations: int,
         cells = [(f"{number}", *(f"{power:.2f}" for power in front.power[number])) for number in keep]
         print_table(f"Front, {len(keep)} of {len(front.x)} designs", ("design", *(f"{g}, W" for g in GROUPS)), cells)
     if winner.gain and winner.gain.mean > 0 and not winner.gain.beyond_error:
-        output.print("note: the gain is within the error bar of the recovered moments; --caution 1 looks for a surer one")
+        output.print(
+            "note: the gain is within the error bar of the recovered moments; --caution 1 looks for a surer one"
+        )
     if winner.reversals["knee"] > 2:
         output.print("note: the knee swings more than once per turn of the crank; can the muscles follow?")
     output.print("note: the design space is an assumption, see --problem", soft_wrap=True)

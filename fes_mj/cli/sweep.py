@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from fes_mj.cli.output import output, print_json, print_table, progress_bar
+from fes_mj.cli.output import print_json, print_table, progress_bar
+from fes_mj.errors import import_extra
 from fes_mj.files import require_folder
 
 if TYPE_CHECKING:
@@ -66,8 +67,7 @@ def sweep(
 
 
 def _summary(sweep: Sweep, before: int, seconds: float) -> dict[str, Any]:
-    import pyarrow.compute as pc
-
+    pc = import_extra("pyarrow.compute", "optimize")
     table = sweep.read()
     turning = int(pc.sum(table["turns"]).as_py() or 0)
     best = None

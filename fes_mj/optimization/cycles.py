@@ -51,7 +51,7 @@ class WorkTable:
         return self._work["knee"].shape[1]
 
     def area(self, joint: str, angle: Any) -> NDArray[np.float64]:
-        """Work of extending to `angle` (rad, shape (m,)) and flexing back from it, J, shape (m, sets), up to a constant."""
+        """Work of extending to `angle` (rad, shape (m,)) and flexing back, J, shape (m, sets), up to a constant."""
         return self._at(joint, source_angle(joint, angle, 1.0)) - self._at(joint, source_angle(joint, angle, -1.0))
 
     def _at(self, joint: str, source: Any) -> NDArray[np.float64]:
@@ -83,9 +83,11 @@ def cycles(design: Design, table: WorkTable, points: int = TURN_POINTS) -> Cycle
 
     points: crank angles, uniform; the extremes between them are found by a parabola.
     """
-    crank_angle = np.arange(points) * (2 * np.pi / points)
+    crank_angle = np.linspace(0, 2 * np.pi, points, endpoint=False)
     size = max(1, BLOCK_POSITIONS // points)
-    parts = [_turn(take(design, slice(start, start + size)), crank_angle) for start in range(0, batch_size(design), size)]
+    parts = [
+        _turn(take(design, slice(start, start + size)), crank_angle) for start in range(0, batch_size(design), size)
+    ]
     reach = np.concatenate([part[0] for part in parts])
     count, first_rows = len(reach), size * np.arange(len(parts))
     result = Cycles(reach, {}, {}, {}, {}, np.zeros((count, table.sets)))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fes_mj.optimization.evolution import cma_es, differential
-from fes_mj.optimization.parallel import Workers, run_tasks
+from fes_mj.optimization.parallel import HERE, Workers, run_tasks
 from fes_mj.optimization.problem import Problem
 from fes_mj.optimization.random_pursuit import random_pursuit
 from fes_mj.optimization.search import BudgetSpentError, Result, Search, feasible_start, require_feasible
@@ -28,7 +29,7 @@ METHODS: dict[str, Method] = {
     "cma-es": cma_es,
     "random-pursuit": _pursue,
 }
-# Of one search. Random pursuit stops by itself, after 0.04 to 1 million trials from the paper's designs and random starts.
+# Of one search. Random pursuit stops by itself, after 0.04 to 1 million trials.
 BUDGETS = {"differential-evolution": 50_000, "cma-es": 50_000, "random-pursuit": 5_000_000}
 
 
@@ -44,10 +45,8 @@ class _Task:
 def search_once(task: Any) -> Result:
     """One search from its own random numbers."""
     search = Search(task.problem, task.budget)
-    try:
+    with suppress(BudgetSpentError):
         METHODS[task.method](search, task.start, np.random.default_rng(task.seed))
-    except BudgetSpentError:
-        pass
     return search.result()
 
 
@@ -59,13 +58,13 @@ def optimize(
     budget: int | None = None,
     seed: int = 0,
     start: Start = None,
-    workers: Workers = Workers(),
+    workers: Workers = HERE,
     progress: Callable[[Result], None] | None = None,
 ) -> list[Result]:
     """Independent searches, best first; the outcome does not depend on where they run.
 
-    budget: evaluations of each search. start: ten variables, feasible; by default random. Raises InputError if the start
-    or the whole search range is infeasible.
+    budget: evaluations of each search. start: ten variables, feasible; by default random. Raises InputError if the
+    start is infeasible, or nothing feasible is found.
     """
     if start is not None:
         require_feasible(problem, start, problem.template.name)

@@ -8,7 +8,8 @@ from typing import Any, NamedTuple, TypeVar
 
 from fes_mj.errors import InputError, UnstableError, import_extra
 
-Task, Outcome = TypeVar("Task"), TypeVar("Outcome")
+Task = TypeVar("Task")
+Outcome = TypeVar("Outcome")
 _PATIENCE = "5s"  # for a scheduler to answer
 
 
@@ -19,8 +20,11 @@ class Workers(NamedTuple):
     cluster: str | None = None
 
 
+HERE = Workers()  # this process
+
+
 def run_tasks(
-    function: Callable[[Task], Outcome], tasks: Sequence[Task], workers: Workers = Workers()
+    function: Callable[[Task], Outcome], tasks: Sequence[Task], workers: Workers = HERE
 ) -> Iterator[tuple[int, Outcome]]:
     """Yield (index, function(task)) as tasks finish, in any order.
 
@@ -39,7 +43,9 @@ def run_tasks(
             yield from parallel(joblib.delayed(_numbered)(function, index, task) for index, task in enumerate(tasks))
         except RuntimeError as error:
             if type(error).__name__ == "TerminatedWorkerError":
-                raise UnstableError("a worker process died (killed, or out of memory); what was finished is kept") from None
+                raise UnstableError(
+                    "a worker process died (killed, or out of memory); what was finished is kept"
+                ) from None
             raise
 
 

@@ -1,4 +1,4 @@
-"""The optimisation problem of the paper's Section 6, once: variables, objective, constraints, a population at a time."""
+"""The optimisation problem of the paper's Section 6, once: variables, objective, constraints, for populations."""
 
 from __future__ import annotations
 
@@ -128,7 +128,7 @@ class Problem:
     def batch(self, x: NDArray[np.float64]) -> Design:
         """The designs of a population, shape (n, 9) or (n, 10), as a batch."""
         linkage = unpack(self.template.linkage, x.T[:LENGTHS, :, None])
-        gear_ratio = x[:, LENGTHS:] if x.shape[1] > LENGTHS else np.ones((len(x), 1))
+        gear_ratio: Any = x[:, LENGTHS:] if x.shape[1] > LENGTHS else np.ones((len(x), 1))
         return replace(self.template, linkage=replace(linkage, gear_ratio=gear_ratio))
 
     def design(self, x: NDArray[np.float64], name: str) -> Design:
@@ -139,7 +139,7 @@ class Problem:
     def evaluate(self, x: NDArray[np.float64]) -> Evaluation:
         """Power and constraints of a population, shape (n, 10).
 
-        With shape (n, 9) each design gets the largest gear ratio that its joint speeds allow: power is proportional to it.
+        With shape (n, 9) each design gets the largest gear ratio its joint speeds allow: power is proportional to it.
         Designs whose lengths already violate a constraint are not turned.
         """
         design = self.batch(x)

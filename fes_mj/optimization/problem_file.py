@@ -42,7 +42,7 @@ class Limits:
 
 
 def load_limits(path: Path = DEFAULT) -> Limits:
-    """Read a problem file. Raises InputError naming file, key and value for what is missing, unknown or contradictory."""
+    """Read a problem file. Raises InputError naming file, key and value of what is missing, unknown, contradictory."""
     try:
         content = tomllib.loads(path.read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
@@ -54,7 +54,7 @@ def load_limits(path: Path = DEFAULT) -> Limits:
             raise InputError(f"{path}: {table} is {content[table]!r}; it must be a table [{table}]")
         _same_keys(path, f"{table}.", content[table], keys)
     polygon = _polygon(path, content["design_space"]["polygon"])
-    limits = {
+    limits: dict[str, Any] = {
         key: _pair(path, f"limits.{key}", value) if key in _PAIRS else _number(path, f"limits.{key}", value)
         for key, value in content["limits"].items()
     }
@@ -89,7 +89,9 @@ def _pair(path: Path, name: str, value: Any) -> tuple[float, float]:
         raise InputError(f"{path}: {name} is {value!r}; it must be [lowest, highest]")
     low, high = (_number(path, name, part) for part in value)
     if not low < high:
-        raise InputError(f"{path}: {name} is {value!r}; the bounds contradict each other, the first must be the smaller")
+        raise InputError(
+            f"{path}: {name} is {value!r}; the bounds contradict each other, the first must be the smaller"
+        )
     return low, high
 
 

@@ -33,7 +33,7 @@ class Result:
 
 
 class Search:
-    """Evaluates populations for a method, counts, and remembers the best. Raises BudgetSpentError at the budget's end."""
+    """Evaluates populations for a method, counts, remembers the best. Raises BudgetSpentError at the budget's end."""
 
     def __init__(self, problem: Problem, budget: int, progress: Progress | None = None) -> None:
         self.problem, self.budget, self.evaluations = problem, budget, 0
@@ -71,15 +71,16 @@ class Search:
                 f"{v['name']} is {v['value']:.4g} {v['unit']} (limit {v['limit']:.4g})".replace("  ", " ")
                 for v in self.problem.violations(evaluation)
             )
+            kind = self.problem.template.linkage.kind
             raise InputError(
-                f"no feasible {self.problem.template.linkage.kind} found in {self.evaluations} evaluations; the closest "
+                f"no feasible {kind} found in {self.evaluations} evaluations; the closest "
                 f"violates: {broken or 'assembly'}. Loosen a limit, widen the design space or raise --budget"
             )
         return Result(self.best_x, self.best, self.evaluations, np.array(self._history))
 
 
 def feasible_start(problem: Problem, random: np.random.Generator) -> NDArray[np.float64]:
-    """A random feasible design, ten variables, uniform in the search ranges. Raises InputError if none turns up."""
+    """A random feasible design, ten variables, from the search ranges. Raises InputError if none turns up."""
     low, high = problem.limits.search.T
     search = Search(problem, _MOST_SAMPLES)
     while search.evaluations < search.budget:

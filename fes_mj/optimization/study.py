@@ -192,7 +192,9 @@ def _sampled(path: Path, sample: dict[str, Any], size: int) -> dict[str, NDArray
         raise InputError(f"{path}: sample.seed is {seed!r}; it must be a whole number from 0")
     if not ranges:
         if size > 1:
-            raise InputError(f"{path}: sample.size is {size}, but no variable has a range; give one, as in R2 = [0.14, 0.18]")
+            raise InputError(
+                f"{path}: sample.size is {size}, but no variable has a range; give one, as in R2 = [0.14, 0.18]"
+            )
         return {}
     from scipy.stats.qmc import LatinHypercube
 
@@ -218,7 +220,7 @@ def _value(path: Path, key: str, name: str, value: Any) -> float:
 
 
 def vary(design: Design, values: dict[str, Any]) -> Design:
-    """The design with variables replaced by numbers, or by arrays of shape (designs, 1) for a batch (units of the file)."""
+    """The design with variables, in units of the file, replaced by numbers or, for a batch, arrays (designs, 1)."""
     changes: dict[str, dict[str, Any]] = {"linkage": {}, "rider": {}}
     for name, value in values.items():
         variable = VARIABLES[name]

@@ -19,7 +19,7 @@ from fes_mj.design_file import design_toml
 from fes_mj.errors import InputError, UnstableError, import_extra
 from fes_mj.files import replacing, write_text
 from fes_mj.optimization.cycles import WorkTable, cycles
-from fes_mj.optimization.parallel import Workers, run_tasks
+from fes_mj.optimization.parallel import HERE, Workers, run_tasks
 from fes_mj.optimization.study import VARIABLES, Study, vary
 from fes_mj.torque import JOINTS, JointMoments
 
@@ -59,7 +59,7 @@ class Sweep:
                 "name another folder"
             )
 
-    def run(self, workers: Workers = Workers(), progress: Callable[[int], None] | None = None) -> None:
+    def run(self, workers: Workers = HERE, progress: Callable[[int], None] | None = None) -> None:
         """Evaluate the chunks that are not there yet; progress is told the points of each chunk as it is written."""
         parquet = import_extra("pyarrow.parquet", "optimize")
         arrow = import_extra("pyarrow", "optimize")

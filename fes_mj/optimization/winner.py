@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 class Winner:
     """A design with everything that was found out about it.
 
-    speeds: mean absolute joint speed, deg/s. reversals: of each joint in a turn. gain: over `rival` under the same moments,
-    None for moments without error bars.
+    speeds: mean absolute joint speed, deg/s. reversals: of each joint in a turn. gain: over `rival` under the same
+    moments, None for moments without error bars.
     """
 
     design: Design
@@ -56,7 +56,5 @@ def assess(design: Design, rival: Design, moments: JointMoments, seed: int = 0) 
 def gain_over(design: Design, rival: Design, group: str) -> Gain:
     """Power gained over a rival, each at its own cadence, under the recovered moments of a group."""
     table = uncertain_table(group)
-    power, baseline = (
-        cycles(each, table).work[0] * each.linkage.cadence / (2 * np.pi) for each in (design, rival)
-    )
+    power, baseline = (cycles(each, table).work[0] * each.linkage.cadence / (2 * np.pi) for each in (design, rival))
     return gain(power, baseline)

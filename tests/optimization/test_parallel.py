@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from fes_mj.errors import InputError
-from fes_mj.optimization.parallel import Workers, run_tasks
+from fes_mj.optimization.parallel import HERE, Workers, run_tasks
 from fes_mj.optimization.study import load_study
 from fes_mj.optimization.sweep import Sweep
 
@@ -41,7 +41,7 @@ def study_file(folder: Path, chunk: int = 500, size: int = 1000) -> Path:
     return path
 
 
-def run(study: Path, folder: Path, workers: Workers = Workers()) -> Sweep:
+def run(study: Path, folder: Path, workers: Workers = HERE) -> Sweep:
     sweep = Sweep(load_study(study), folder)
     sweep.run(workers)
     return sweep
@@ -98,7 +98,7 @@ def cluster(tmp_path: Path) -> Iterator[tuple[str, list[subprocess.Popen[str]]]]
     pytest.importorskip("distributed")
 
     def start(*arguments: str) -> subprocess.Popen[str]:
-        log = (tmp_path / f"{arguments[0]}-{len(processes)}.log").open("w")
+        log = (tmp_path / f"{arguments[0]}.log").open("a")
         command = [sys.executable, "-m", "dask", *arguments, "--no-dashboard"]
         return subprocess.Popen(command, stderr=log, stdout=log, cwd=tmp_path, text=True)
 
@@ -107,10 +107,10 @@ def cluster(tmp_path: Path) -> Iterator[tuple[str, list[subprocess.Popen[str]]]]
     address, deadline = None, time.monotonic() + 30
     while not address and time.monotonic() < deadline:
         time.sleep(0.1)
-        address = re.search(r"Scheduler at:\s+(tcp://\S+)", (tmp_path / "scheduler-0.log").read_text())
+        address = re.search(r"Scheduler at:\s+(tcp://\S+)", (tmp_path / "scheduler.log").read_text())
     assert address
-    for _ in range(2):
-        processes.append(start("worker", address[1], "--no-nanny", "--nthreads", "1", "--host", "127.0.0.1"))
+    worker = ("worker", address[1], "--no-nanny", "--nthreads", "1", "--host", "127.0.0.1")
+    processes += [start(*worker), start(*worker)]
     yield address[1], processes[1:]
     for process in reversed(processes):
         process.kill()
