@@ -46,6 +46,7 @@ def optimize(
     jobs: int = 1,
     cluster: str | None = None,
     out: Annotated[Path | None, Parameter(name=["--out", "-o"])] = None,
+    report: Path | None = None,
     json: Annotated[bool, Parameter(negative="")] = False,
     quiet: Annotated[bool, Parameter(alias="-q", negative="")] = False,
 ) -> int:
@@ -86,13 +87,16 @@ def optimize(
     cluster
         Dask scheduler, tcp://host:port, to send the searches to.
     out
-        The design file to write (.toml); model (.xml) and page (.html) appear beside it.
+        The design file to write (.toml); its model (.xml), and the front (.csv), appear beside it.
+    report
+        A page on the design (.html): numbers, motion, power, constraints.
     json
         Print one JSON object and nothing else.
     quiet
         Print nothing.
     """
-    _check(budget, searches, caution, moments, group, smooth, method, out)
+    _check(budget, searches, caution, moments, group, smooth, method)
+    _check_files(out, report)
     from fes_mj.optimization.parallel import Workers
     from fes_mj.optimization.winner import assess
 
@@ -112,7 +116,13 @@ def optimize(
         x0 = task.variables(first) if first else None
         x, evaluations = _search(task, method, quiet or json, start=x0, **options)
     winner = assess(task.design(x, name), rival, given, seed)
-    files = _write(winner, task, front, out, _told(kind, method, seed, evaluations)) if out else {}
+    told = f"Found by fes_mj optimize {kind} --method {method} --seed {seed}, {evaluations} evaluations."
+    files = _write(winner, front, out, told) if out else {}
+    if report:
+        from fes_mj.optimization.page import page_html
+
+        write_text(report, page_html(winner, told, rows(winner), limits_table(task, x), task.limits.space))
+        files["report"] = str(report)
     if json:
         print_json(_summary(winner, task, x, method, evaluations, front) | {"design_file": None, **files})
     elif not quiet:
@@ -130,7 +140,6 @@ def _check(
     group: str | None,
     smooth: bool,
     method: str,
-    out: Path | None,
 ) -> None:
     """Refuse unusable options before anything runs."""
     if group and moments:
@@ -147,8 +156,17 @@ def _check(
         )
     if smooth and method != "nsga-ii":
         raise InputError("--smooth is an objective of its own: it needs --method nsga-ii")
+
+
+def _check_files(out: Path | None, report: Path | None) -> None:
+    """Refuse files that could not be written, before anything runs."""
     if out:
         require_writable(out, "the design", ".toml")
+    if report:
+        from fes_mj.optimization.page import require_packages
+
+        require_writable(report, "the page", ".html")
+        require_packages()
 
 
 def _problem(
@@ -286,12 +304,8 @@ def _print(winner: Winner, task: Problem, x: Any, method: str, evaluations: int,
     output.print("note: the design space is an assumption, see --problem", soft_wrap=True)
 
 
-def _told(kind: str, method: str, seed: int, evaluations: int) -> str:
-    return f"Found by fes_mj optimize {kind} --method {method} --seed {seed}, {evaluations} evaluations."
-
-
-def _write(winner: Winner, task: Problem, front: Front | None, out: Path, told: str) -> dict[str, str]:
-    """Design file, model, page, and the front as CSV; each whole or not at all."""
+def _write(winner: Winner, front: Front | None, out: Path, told: str) -> dict[str, str]:
+    """Design file, model, and the front as CSV; each whole or not at all."""
     from fes_mj.mjcf import mjcf_text
     from fes_mj.optimization.problem_file import VARIABLES
 
