@@ -14,7 +14,7 @@ from fes_mj.design_file import load_design
 from fes_mj.errors import InputError
 from fes_mj.torque import JointMoments, load_moments
 
-HIGHEST_CADENCE = 300.0  # rpm, twice what sprinters reach
+HIGHEST_CADENCE = 200.0  # rpm; up to here the default step keeps every check of the catalogue inside its limit
 
 
 class Loaded(NamedTuple):
