@@ -2,7 +2,7 @@
 PYTHON ?= python3
 VENV ?= .venv
 BIN = $(VENV)/bin
-EXTRAS = video,test,lint
+EXTRAS = video,optimize,cluster,report,test,lint
 
 .PHONY: demo test test-long lint format benchmark catalogue clean
 

@@ -26,7 +26,8 @@ from fes_mj.provenance import provenance
 from fes_mj.torque import GROUPS, load_moments
 
 FOLDER = Path("results/optimization")
-SEEDS, BUDGET, WORKERS = 5, 100_000, Workers(jobs=2)
+SEEDS, BUDGET, WORKERS = 5, 50_000, Workers(jobs=2)
+SEARCHES, SEARCH_BUDGET = 3, 20_000  # for each winner
 TARGETS = {"r1": "p1p2", "r2": "p1p3", "d1": "p1p2", "d2": "p1p3"}  # the group each was optimised for
 CAUTIONS = (0.0, 1.0, 2.0)
 
@@ -85,7 +86,7 @@ def compare(target: str) -> list[Row]:
     own = task.variables(task.template)
     options: dict[str, Any] = {"searches": SEEDS, "seed": 1, "workers": WORKERS}
     pursued = optimize(task, "random-pursuit", **options)
-    from_own = optimize(task, "random-pursuit", start=own, **options)
+    from_own = optimize(task, "random-pursuit", start=own, **options | {"searches": 2})
     median = float(np.median([result.merit for result in pursued]))
     printed = float(task.evaluate(own[None]).power[0, 0])
     rows = [
@@ -104,7 +105,7 @@ def winners(target: str) -> dict[float, Winner]:
     found = {}
     for caution in CAUTIONS:
         task = problem(target, manufacturable=True, caution=caution)
-        best = optimize(task, "cma-es", searches=SEEDS, budget=BUDGET // 2, seed=2, workers=WORKERS)[0]
+        best = optimize(task, "cma-es", searches=SEARCHES, budget=SEARCH_BUDGET, seed=2, workers=WORKERS)[0]
         name = f"{target}-caution-{caution:.0f}"
         found[caution] = assess(task.design(best.x, name), task.template, load_moments(TARGETS[target]))
     return found
@@ -119,7 +120,7 @@ def fronts() -> dict[str, Any]:
         table = WorkTable.of(*moments)
         speeds = joint_speeds(trt, table)
         task = Problem(load_design(template), table, load_limits(), speeds["knee"], speeds["hip"])
-        front = pareto_front(task, moments, BUDGET // 2, seed=1)
+        front = pareto_front(task, moments, BUDGET, seed=1)
         result[kind] = {"evaluations": front.evaluations, "power_W": front.power.tolist(), "x": front.x.tolist()}
     return result
 
@@ -182,21 +183,18 @@ def unbounded() -> dict[str, str]:
     return notes
 
 
-def main() -> None:
-    """Compare, find winners, write the results."""
-    started = time.perf_counter()
-    FOLDER.mkdir(parents=True, exist_ok=True)
-    rows = [row for target in TARGETS for row in compare(target)]
-    won = {target: winners(target) for target in TARGETS}
-    without, trade_off = unbounded(), fronts()
+def write(
+    rows: list[Row], won: dict[str, dict[float, Winner]], bounds: dict[str, str], trade_off: Any, seconds: float
+) -> None:
+    """Table, numbers and design files of what is there so far."""
     for found in won.values():
         for winner in found.values():
-            text = "Found by tools/compare_optimizers.py."
-            write_text(FOLDER / f"{winner.design.name}.toml", design_toml(winner.design, text))
-    write_text(FOLDER / "comparison.md", markdown(rows, won, without))
+            text = design_toml(winner.design, "Found by tools/compare_optimizers.py.")
+            write_text(FOLDER / f"{winner.design.name}.toml", text)
+    write_text(FOLDER / "comparison.md", markdown(rows, won, bounds))
     content = {
         "provenance": provenance([DEFAULT]),
-        "seconds": time.perf_counter() - started,
+        "seconds": seconds,
         "methods": [row._asdict() for row in rows],
         "winners": [
             {
@@ -206,6 +204,7 @@ def main() -> None:
                 "gain_W": winner.gain.mean if winner.gain else None,
                 "gain_deviation_W": winner.gain.deviation if winner.gain else None,
                 "simulated_power_mean_W": winner.check.simulation.power_mean,
+                "timestep_s": winner.check.simulation.timestep,
                 "agrees": winner.check.agrees,
                 "reversals": winner.reversals,
                 "manufacturing": winner.manufacturing._asdict(),
@@ -214,10 +213,24 @@ def main() -> None:
             for target, found in won.items()
             for caution, winner in found.items()
         ],
-        "bounds": without,
+        "bounds": bounds,
         "fronts": trade_off,
     }
     write_text(FOLDER / "comparison.json", json_text(content))
+
+
+def main() -> None:
+    """Compare, find winners, write the results; after every target what is known by then."""
+    started = time.perf_counter()
+    FOLDER.mkdir(parents=True, exist_ok=True)
+    rows: list[Row] = []
+    won: dict[str, dict[float, Winner]] = {}
+    bounds, trade_off = unbounded(), fronts()
+    for target in TARGETS:
+        rows += compare(target)
+        won[target] = winners(target)
+        write(rows, won, bounds, trade_off, time.perf_counter() - started)
+        print(f"{target}: {time.perf_counter() - started:.0f} s", flush=True)
     print((FOLDER / "comparison.md").read_text())
 
 

@@ -236,6 +236,7 @@ def _summary(
         "reversals_per_turn": winner.reversals,
         "simulated_power_mean_W": check.simulation.power_mean,
         "relative_difference": check.relative_difference,
+        "timestep_s": check.simulation.timestep,
         "agrees": check.agrees,
         "compared_with": winner.rival.name,
         "gain_W": winner.gain.mean if winner.gain else None,
@@ -259,6 +260,7 @@ def rows(winner: Winner) -> list[tuple[str, str]]:
     found = [
         ("mean crank power by statics, W", f"{static.power_mean:.3f}"),
         ("mean crank power simulated, W", f"{check.simulation.power_mean:.3f}"),
+        ("time step of the simulation, ms", f"{1e3 * check.simulation.timestep:.3g}"),
         ("work per turn, J", f"{static.work_per_turn:.3f}"),
         ("cadence, rpm", f"{static.cadence * 30 / math.pi:.1f}"),
         ("mean knee speed, deg/s", f"{winner.speeds['knee']:.1f}"),

@@ -15,6 +15,7 @@ from fes_mj.optimization.search import Search, feasible_start
 POPULATION = 7  # per variable
 # Part of the search range; a restart of CMA-ES begins at another random feasible design.
 CMA_SIGMA = 0.05
+CMA_POPULATION = 32  # three times pycma's own: a population costs hardly more than a few designs
 
 
 def differential(search: Search, start: NDArray[np.float64] | None, random: np.random.Generator) -> None:
@@ -42,9 +43,9 @@ def cma_es(search: Search, start: NDArray[np.float64] | None, random: np.random.
     """CMA-ES (pycma), started again with a doubled population whenever it has converged."""
     cma = import_extra("cma", "optimize")
     low, high = search.problem.limits.search[:LENGTHS].T
-    population = 16
+    population = CMA_POPULATION
     while True:
-        x0 = feasible_start(search.problem, random) if start is None else start
+        x0 = feasible_start(search, random) if start is None else start
         options: dict[str, Any] = {
             "bounds": [0, 1],
             "popsize": population,

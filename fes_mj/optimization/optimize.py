@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from fes_mj.errors import InputError
 from fes_mj.optimization.evolution import cma_es, differential
 from fes_mj.optimization.parallel import HERE, Workers, run_tasks
 from fes_mj.optimization.problem import Problem
@@ -20,7 +20,7 @@ Start = NDArray[np.float64] | None
 
 
 def _pursue(search: Search, start: Start, random: np.random.Generator) -> None:
-    random_pursuit(search, feasible_start(search.problem, random) if start is None else start, random)
+    random_pursuit(search, feasible_start(search, random) if start is None else start, random)
 
 
 Method = Callable[[Search, Start, np.random.Generator], None]
@@ -42,12 +42,15 @@ class _Task:
     seed: np.random.SeedSequence
 
 
-def search_once(task: Any) -> Result:
-    """One search from its own random numbers."""
+def search_once(task: _Task) -> Result | InputError:
+    """One search from its own random numbers; an error, as a value, if it found nothing feasible."""
     search = Search(task.problem, task.budget)
     with suppress(BudgetSpentError):
         METHODS[task.method](search, task.start, np.random.default_rng(task.seed))
-    return search.result()
+    try:
+        return search.result()
+    except InputError as error:
+        return error
 
 
 def optimize(
@@ -59,20 +62,24 @@ def optimize(
     seed: int = 0,
     start: Start = None,
     workers: Workers = HERE,
-    progress: Callable[[Result], None] | None = None,
+    progress: Callable[[int], None] | None = None,
 ) -> list[Result]:
     """Independent searches, best first; the outcome does not depend on where they run.
 
     budget: evaluations of each search. start: ten variables, feasible; by default random. Raises InputError if the
-    start is infeasible, or nothing feasible is found.
+    start is infeasible, or no search finds anything feasible. progress is told how many searches are done.
     """
     if start is not None:
         require_feasible(problem, start, problem.template.name)
     seeds = np.random.SeedSequence(seed).spawn(searches)
     tasks = [_Task(problem, method, budget or BUDGETS[method], start, each) for each in seeds]
-    results: list[Result | None] = [None] * searches
-    for index, result in run_tasks(search_once, tasks, workers):
-        results[index] = result
+    outcomes: dict[int, Result | InputError] = {}
+    for index, outcome in run_tasks(search_once, tasks, workers):
+        outcomes[index] = outcome
         if progress:
-            progress(result)
-    return sorted((result for result in results if result), key=lambda result: -result.merit)
+            progress(len(outcomes))
+    ordered = [outcomes[index] for index in range(searches)]
+    results = [outcome for outcome in ordered if isinstance(outcome, Result)]
+    if not results:
+        raise next(outcome for outcome in ordered if isinstance(outcome, InputError))
+    return sorted(results, key=lambda result: -result.merit)

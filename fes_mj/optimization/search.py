@@ -12,7 +12,7 @@ from fes_mj.errors import InputError
 from fes_mj.optimization.problem import LENGTHS, Problem
 
 Progress = Callable[[int, float], None]  # evaluations so far, best merit
-_SAMPLE, _MOST_SAMPLES = 20_000, 2_000_000
+_SAMPLE = 2000
 
 
 class BudgetSpentError(Exception):
@@ -79,18 +79,21 @@ class Search:
         return Result(self.best_x, self.best, self.evaluations, np.array(self._history))
 
 
-def feasible_start(problem: Problem, random: np.random.Generator) -> NDArray[np.float64]:
-    """A random feasible design, ten variables, from the search ranges. Raises InputError if none turns up."""
-    low, high = problem.limits.search.T
-    search = Search(problem, _MOST_SAMPLES)
+def feasible_start(search: Search, random: np.random.Generator) -> NDArray[np.float64]:
+    """A random feasible design, ten variables, from the search ranges; every design tried until then is counted.
+
+    Raises BudgetSpentError if none turns up within the budget.
+    """
+    low, high = search.problem.limits.search.T
     while search.evaluations < search.budget:
-        x = random.uniform(low, high, (_SAMPLE, len(low)))
-        evaluation = problem.evaluate(x)
-        if evaluation.feasible.any():
-            return evaluation.x[int(np.argmax(evaluation.feasible))]
-        search.note(evaluation.x, problem.merit(evaluation))
-    search.result()
-    raise AssertionError("a feasible best would have been returned")
+        x = random.uniform(low, high, (min(_SAMPLE, search.budget - search.evaluations), len(low)))
+        evaluation = search.problem.evaluate(x)
+        found = evaluation.feasible.any()
+        used = int(np.argmax(evaluation.feasible)) + 1 if found else len(x)
+        search.note(evaluation.x[:used], search.problem.merit(evaluation)[:used])
+        if found:
+            return evaluation.x[used - 1]
+    raise BudgetSpentError
 
 
 def require_feasible(problem: Problem, x: NDArray[np.float64], name: str) -> None:

@@ -121,10 +121,11 @@ def _static(design: Design, values: Columns, moments: JointMoments, count: int) 
     batch = vary(design, {name: column[:, None] for name, column in values.items()})
     turn = cycles(batch, WorkTable.of(moments))
     shape = np.ones(count)  # what does not vary is the same for all points
-    own = np.ravel(batch.linkage.cadence) * shape
-    cadence = values["cadence_rpm"] * (math.pi / 30) if "cadence_rpm" in values else own
+    own = np.ravel(batch.linkage.cadence) * shape * (30 / math.pi)
+    rpm = values.get("cadence_rpm", own)
+    cadence = rpm * (math.pi / 30)
     result = {
-        "cadence_rpm": cadence * 30 / math.pi,
+        "cadence_rpm": rpm,
         "turns": (turn.reach > 0) & (shape > 0),
         "power_mean_W": turn.work[:, 0] * cadence / (2 * math.pi),
         "work_per_turn_J": turn.work[:, 0] * shape,

@@ -109,7 +109,9 @@ def test_an_infeasible_start_is_refused_by_name() -> None:
 
 def test_random_starts_are_feasible_and_different() -> None:
     problem, random = problem_of("d2"), np.random.default_rng(0)
-    starts = np.array([feasible_start(problem, random) for _ in range(3)])
+    searches = [Search(problem, 10**6) for _ in range(3)]
+    starts = np.array([feasible_start(search, random) for search in searches])
+    assert all(1 < search.evaluations < 10**6 for search in searches)
     assert problem.evaluate(starts).feasible.all()
     assert np.ptp(starts, axis=0).min() > 0.001
 
