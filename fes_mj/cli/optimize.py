@@ -95,7 +95,7 @@ def optimize(
     quiet
         Print nothing.
     """
-    _check(budget, searches, caution, moments, group, smooth, method)
+    _check(budget, searches, seed, caution, moments, group, smooth, method)
     _check_files(out, report)
     from fes_mj.optimization.parallel import Workers
     from fes_mj.optimization.winner import assess
@@ -115,9 +115,10 @@ def optimize(
         options = {"searches": searches, "budget": budget, "seed": seed, "workers": Workers(jobs, cluster)}
         x0 = task.variables(first) if first else None
         x, evaluations = _search(task, method, quiet or json, start=x0, **options)
-    winner = assess(task.design(x, name), rival, given, seed)
+    design = task.design(x, name)
     told = f"Found by fes_mj optimize {kind} --method {method} --seed {seed}, {evaluations} evaluations."
-    files = _write(winner, front, out, told) if out else {}
+    files = _write(design, front, out, told) if out else {}  # first: what was found stays, whatever its simulation does
+    winner = assess(design, rival, given, seed)
     if report:
         from fes_mj.optimization.page import page_html
 
@@ -135,6 +136,7 @@ def optimize(
 def _check(
     budget: int | None,
     searches: int,
+    seed: int,
     caution: float,
     moments: Path | None,
     group: str | None,
@@ -148,6 +150,8 @@ def _check(
         raise InputError(f"--budget is {budget}; it must be at least 1000 evaluations (a second makes 50,000)")
     if searches < 1:
         raise InputError(f"--searches is {searches}; it must be at least 1")
+    if seed < 0:
+        raise InputError(f"--seed is {seed}; it must not be negative")
     if not 0 <= caution <= 10:
         raise InputError(f"--caution is {caution:g}; it must be from 0 to 10 standard deviations")
     if caution and (moments or method == "nsga-ii"):
@@ -306,14 +310,14 @@ def _print(winner: Winner, task: Problem, x: Any, method: str, evaluations: int,
     output.print("note: the design space is an assumption, see --problem", soft_wrap=True)
 
 
-def _write(winner: Winner, front: Front | None, out: Path, told: str) -> dict[str, str]:
+def _write(design: Design, front: Front | None, out: Path, told: str) -> dict[str, str]:
     """Design file, model, and the front as CSV; each whole or not at all."""
     from fes_mj.mjcf import mjcf_text
     from fes_mj.optimization.problem_file import VARIABLES
 
-    write_text(out, design_toml(winner.design, told))
+    write_text(out, design_toml(design, told))
     model = out.with_suffix(".xml")
-    write_text(model, mjcf_text(winner.design))
+    write_text(model, mjcf_text(design))
     files = {"design_file": str(out), "model_file": str(model)}
     if front:
         table = np.column_stack([front.power, front.x])

@@ -49,7 +49,7 @@ def test_caution_trades_gain_for_certainty() -> None:
         own = fes_mj.load_design("d2")
         baseline = cycles(own, table).work[0] * own.linkage.cadence / (2 * np.pi)
         problem = Problem(own, table, base.limits, base.knee_speed, base.hip_speed, caution, baseline)
-        x = optimize(problem, "cma-es", budget=10_000, seed=4)[0].x
+        x = optimize(problem, "cma-es", budget=6000, seed=4)[0].x
         found.append(gain(problem.evaluate(x[None]).power[0], baseline))
     assert found[1].deviation < found[0].deviation
     assert found[1].mean > 2 * found[1].deviation

@@ -41,7 +41,7 @@ class Recorder(Search):
 
 def test_random_pursuit_is_the_one_at_a_time_method() -> None:
     """Replayed trial by trial: each lies within a step of the best so far, and it stops by the paper's rule."""
-    problem, patience = problem_of("d1"), 40
+    problem, patience = problem_of("d1"), 100
     search = Recorder(problem, 10**6)
     random_pursuit(search, problem.variables(problem.template), np.random.default_rng(5), patience)
     best_x, best = search.seen[0]
@@ -64,11 +64,12 @@ def test_a_seed_gives_the_same_design_and_the_budget_holds(method: str) -> None:
     if method == "cma-es":
         pytest.importorskip("cma")
     problem = problem_of("r1")
-    first, again = (optimize(problem, method, searches=2, budget=3000, seed=7) for _ in range(2))
+    first, again = (optimize(problem, method, searches=2, budget=9000, seed=7) for _ in range(2))
     assert [result.merit for result in first] == [result.merit for result in again]
     assert np.array_equal(first[0].x, again[0].x)
-    assert all(result.evaluations == 3000 for result in first)
-    assert first[0].merit >= first[1].merit
+    assert all(result.evaluations == 9000 for result in first)
+    merits = [result.merit for result in first]
+    assert merits == sorted(merits, reverse=True)
     assert problem.evaluate(first[0].x[None]).feasible[0]
 
 

@@ -87,6 +87,7 @@ def test_own_moments_have_no_error_bar(tmp_path: Path, capsys: pytest.CaptureFix
         (["crt", "--start", "r2", "--speeds-of", "r2"], "the start r2 is not feasible: grashof is"),
         (["cdt", "--knee-speed-limit", "-3"], "the knee speed limit is -3 deg/s; it must be above 0"),
         (["cdt", "--hip-speed-limit", "nan"], "the hip speed limit is nan deg/s"),
+        (["cdt", "--seed", "-1"], "--seed is -1; it must not be negative"),
         (["cdt", "--budget", "5"], "--budget is 5; it must be at least 1000"),
         (["cdt", "--caution", "1", "--method", "nsga-ii"], "--caution needs the error bars of one group"),
         (["cdt", "--smooth"], "--smooth is an objective of its own"),

@@ -13,7 +13,6 @@ from pathlib import Path
 
 import pytest
 
-from fes_mj.errors import InputError
 from fes_mj.optimization.parallel import HERE, Workers, run_tasks
 from fes_mj.optimization.study import load_study
 from fes_mj.optimization.sweep import Sweep
@@ -68,7 +67,7 @@ def test_tasks_are_spread_over_processes() -> None:
 
 def test_a_sweep_survives_kill_9(tmp_path: Path) -> None:
     """Killed with chunks done and chunks to do; then finished chunks are kept as they are, none is counted twice."""
-    study, folder = study_file(tmp_path, chunk=400, size=20_000), tmp_path / "out"
+    study, folder = study_file(tmp_path, chunk=400, size=5000), tmp_path / "out"
     command = [sys.executable, "-m", "fes_mj", "sweep", str(study), "-o", str(folder), "--jobs", "1", "-q"]
     process = subprocess.Popen(command)
     deadline = time.monotonic() + 60
@@ -77,19 +76,13 @@ def test_a_sweep_survives_kill_9(tmp_path: Path) -> None:
     process.send_signal(signal.SIGKILL)
     assert process.wait() == -signal.SIGKILL
     before = {path.name: path.stat().st_mtime_ns for path in folder.glob("chunk-*")}
-    assert 5 <= len(before) < 400
+    assert 5 <= len(before) < 100
     result = subprocess.run([*command[:-1], "--json"], capture_output=True, text=True, check=True)
     assert f'"found_finished": {400 * len(before)},' in result.stdout
     after = {path.name: path.stat().st_mtime_ns for path in folder.glob("chunk-*")}
     assert {name: after[name] for name in before} == before
     points = Sweep(load_study(study), folder).read()["point"].to_pylist()
-    assert points == list(range(160_000))
-
-
-def test_no_scheduler_is_one_message() -> None:
-    pytest.importorskip("distributed")
-    with pytest.raises(InputError, match=r"tcp://127.0.0.1:9: no Dask scheduler"):
-        list(run_tasks(slow, [0.0], Workers(cluster="tcp://127.0.0.1:9")))
+    assert points == list(range(40_000))
 
 
 @pytest.fixture

@@ -103,6 +103,12 @@ def test_a_dynamic_study_agrees_with_statics(tmp_path: Path) -> None:
             assert row["simulated_power_mean_W"] is None
 
 
+def test_the_example_is_a_study() -> None:
+    study = load_study(Path(__file__).parents[2] / "examples" / "study.toml")
+    assert study.points == 2 * 2 * 2 * 5 * 1000
+    assert study.chunks == 20
+
+
 def test_a_folder_of_another_study_is_left_alone(study: Path, tmp_path: Path) -> None:
     folder = tmp_path / "out"
     Sweep(load_study(study), folder).run()
