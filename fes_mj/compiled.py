@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fes_mj.errors import import_extra
-from fes_mj.simulation import FORCE_EVERY, Loop, drive_addresses
+from fes_mj.simulation import FORCE_EVERY, Loop, Records, drive_addresses
 from fes_mj.torque import JOINTS, TorqueMap, scalar_map
 
 
@@ -27,7 +27,7 @@ def compiled_loop(torque_map: TorqueMap, drives: dict[str, str]) -> Loop:
     tables = [torque_map.table(joint) for joint in JOINTS]
     kinds = np.array([JOINTS.index(joint) for joint in drives.values()])
 
-    def loop(model: mujoco.MjModel, data: mujoco.MjData, count: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def loop(model: mujoco.MjModel, data: mujoco.MjData, count: int) -> tuple[NDArray[np.float64], Records]:
         addresses = np.array([drive_addresses(model, name) for name in drives])
         mujoco.mj_forward(model, data)  # makes the constraints, whose number and place in memory then stay
         forces = data.efc_force
@@ -39,7 +39,7 @@ def compiled_loop(torque_map: TorqueMap, drives: dict[str, str]) -> Loop:
         advance(model._address, data._address, addresses, kinds, *tables, *state, sensor_rows, force_rows)
         if data.efc_force.ctypes.data != forces.ctypes.data:
             raise AssertionError("MuJoCo moved its constraint forces during a run")
-        return sensor_rows, force_rows
+        return sensor_rows, {"efc_force": force_rows}
 
     return loop
 

@@ -24,6 +24,6 @@ def import_extra(module: str, extra: str) -> Any:
     """Import a module of an optional package. Raises MissingPartError with the command that installs it."""
     try:
         return import_module(module)
-    except ImportError:
+    except ModuleNotFoundError:
         package = module.partition(".")[0]
         raise MissingPartError(f"{package} is not installed; it comes with: pip install 'fes-mj[{extra}]'") from None

@@ -94,6 +94,7 @@ def simulate(
     legs: int = 1,
     mass_scale: float = 1.0,
     gravity: float = GRAVITY,
+    loop_solref: tuple[float, float] | None = None,
     compiled: bool = False,
 ) -> Simulation:
     """Run whole turns of the model of build_mjcf (same arguments) under the torque map of `moments`.
@@ -103,7 +104,14 @@ def simulate(
     """
     cadence = design.linkage.cadence if cadence is None else cadence
     spec = build_mjcf(
-        design, cadence=cadence, timestep=timestep, legs=legs, mass_scale=mass_scale, gravity=gravity, drawn=False
+        design,
+        cadence=cadence,
+        timestep=timestep,
+        legs=legs,
+        mass_scale=mass_scale,
+        gravity=gravity,
+        loop_solref=loop_solref,
+        drawn=False,
     )
     model, steps = spec.compile(), turns * steps_per_turn(cadence, timestep)
     drives, torque_map = joint_drives(LEGS[legs]), TorqueMap(moments)
@@ -116,6 +124,7 @@ def simulate(
 
     column = {model.sensor(i).name: int(model.sensor(i).adr[0]) for i in range(model.nsensor)}
     rows, loops = run.sensors[:steps], [model.equality(i).name for i in range(model.neq)]
+    forces, closed = run.fields["efc_force"], [loop for loop in loops if model.equality(loop).active0]
     angle = {model.joint(i).name: rows[:, column[f"{model.joint(i).name}_angle"]] for i in range(model.njnt)}
     speed = {name: run.sensors[:, column[f"{name}_speed"]] for name in angle}
     moment = {name: torque_map.moment(joint, angle[name], speed[name][:steps]) for name, joint in drives.items()}
@@ -142,7 +151,7 @@ def simulate(
         joint_speed={name: values[:steps] for name, values in speed.items()},
         joint_moment=moment,
         loop_gap={loop: np.linalg.norm(rows[:, (at := column[f"{loop}_gap"]) : at + 3], axis=1) for loop in loops},
-        loop_force={loop: run.forces[:, 3 * i] + 1j * run.forces[:, 3 * i + 2] for i, loop in enumerate(loops)},
+        loop_force={loop: forces[:, 3 * i] + 1j * forces[:, 3 * i + 2] for i, loop in enumerate(closed)},
         energy=Energy(
             joint_work=sum(work(moment[name], speed[name]) for name in drives),
             crank_work=work(crank_moment, speed["crank"]),
@@ -158,35 +167,48 @@ def joint_drives(legs: tuple[Leg, ...]) -> dict[str, str]:
 
 
 class Run(NamedTuple):
-    """Records of a run: sensor rows of all steps and one more, constraint forces of some steps, energies (J)."""
+    """Records of a run: sensor rows of all steps and one more, energies (J), recorded fields (rows, size) by name."""
 
     sensors: NDArray[np.float64]
-    forces: NDArray[np.float64]
     start_energy: tuple[float, float]  # potential, kinetic
     end_energy: tuple[float, float]
+    fields: dict[str, NDArray[np.float64]]
 
 
-# Steps a model so many times; gives the sensor rows of each step and the constraint forces of every FORCE_EVERYth.
-Loop = Callable[[mujoco.MjModel, mujoco.MjData, int], tuple[NDArray[np.float64], NDArray[np.float64]]]
+# Steps a model so many times; gives the sensor rows of each step and the recorded fields of some.
+Records = dict[str, NDArray[np.float64]]
+Loop = Callable[[mujoco.MjModel, mujoco.MjData, int], tuple[NDArray[np.float64], Records]]
 
 
-def run_steps(model: mujoco.MjModel, feedback: dict[str, Callable[[float, float], float]], steps: int) -> Run:
-    """Step the model from its keyframe; `feedback` maps a joint's angle and speed to the motor of the same name."""
+def run_steps(
+    model: mujoco.MjModel,
+    feedback: dict[str, Callable[[float, float], float]],
+    steps: int,
+    record: tuple[str, ...] = ("efc_force",),
+    every: int = FORCE_EVERY,
+) -> Run:
+    """Step the model from its keyframe; `feedback` maps a joint's angle and speed to the motor of the same name.
 
-    def loop(model: mujoco.MjModel, data: mujoco.MjData, count: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    record: fields of MjData to read, each of constant size, after the first and then after each `every` steps.
+    """
+
+    def loop(model: mujoco.MjModel, data: mujoco.MjData, count: int) -> tuple[NDArray[np.float64], Records]:
         # plain floats through memory views and rows as bytes cost half of numpy scalars and row assignment
         qpos, qvel = memoryview(data.qpos), memoryview(data.qvel)
         ctrl: Any = memoryview(data.ctrl)
         drives = [(*drive_addresses(model, name), moment) for name, moment in feedback.items()]
-        step, read, sensors, forces = mujoco.mj_step, data.sensordata.tobytes, [], []
+        step, read = mujoco.mj_step, data.sensordata.tobytes
+        sensors: list[bytes] = []
+        fields: dict[str, list[bytes]] = {name: [] for name in record}
         for number in range(count):
             for actuator, position, speed, moment in drives:
                 ctrl[actuator] = moment(qpos[position], qvel[speed])
             step(model, data)
             sensors.append(read())
-            if not number % FORCE_EVERY:
-                forces.append(data.efc_force.tobytes())
-        return _matrix(sensors), _matrix(forces)
+            if not number % every:
+                for name, rows in fields.items():
+                    rows.append(getattr(data, name).tobytes())
+        return _matrix(sensors), {name: _matrix(rows) for name, rows in fields.items()}
 
     return run_loop(model, loop, steps)
 
@@ -206,17 +228,17 @@ def run_loop(model: mujoco.MjModel, loop: Loop, steps: int) -> Run:
     try:
         loop(model, data, PRE_ROLL)
         start = _energy(model, data)
-        sensors, forces = loop(model, data, steps)
+        sensors, fields = loop(model, data, steps)
+        if any(warning.number for warning in data.warning):
+            raise UnstableError(
+                f"{model.names[: model.names.index(0)].decode()}: the simulation became unstable "
+                f"with a time step of {1e3 * model.opt.timestep:.3g} ms; give a smaller --timestep"
+            )
+        end = _energy(model, data)
+        mujoco.mj_forward(model, data)
     finally:
         mujoco.set_mju_user_warning(previous)
-    if any(warning.number for warning in data.warning):
-        raise UnstableError(
-            f"{model.names[: model.names.index(0)].decode()}: the simulation became unstable "
-            f"with a time step of {1e3 * model.opt.timestep:.3g} ms; give a smaller --timestep"
-        )
-    end = _energy(model, data)
-    mujoco.mj_forward(model, data)
-    return Run(np.vstack([sensors, data.sensordata]), forces, start, end)
+    return Run(np.vstack([sensors, data.sensordata]), start, end, fields)
 
 
 def _matrix(rows: list[bytes]) -> NDArray[np.float64]:

@@ -7,11 +7,14 @@ import math
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import Any
+from typing import Any, TypeVar
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
+from rich.progress import Progress
 from rich.table import Table
+
+Item = TypeVar("Item")
 
 output = Console(highlight=False)
 errors = Console(stderr=True, highlight=False)
@@ -64,3 +67,19 @@ def progress_bar(what: str, total: int, silent: bool, done: int = 0) -> Iterator
     with Progress(*columns, console=errors, transient=True, disable=silent) as bars:
         task = bars.add_task(what, total=total, completed=done)
         yield lambda steps: bars.update(task, advance=steps)
+
+
+def number(value: float, unit: str = "") -> str:
+    """A value with two digits and its unit."""
+    return f"{value:.2g} {unit}".rstrip()
+
+
+def verdict(ok: bool) -> str:
+    """The verdict on a check, in colour."""
+    return "[green]ok[/]" if ok else "[bold red]FAILED[/]"
+
+
+def track(items: Sequence[Item], title: str, quiet: bool = False) -> Iterator[Item]:
+    """The items one by one, with a progress bar on standard error that is gone when they are through."""
+    with Progress(console=errors, transient=True, disable=quiet) as progress:
+        yield from progress.track(items, description=title)
