@@ -4,7 +4,7 @@ VENV ?= .venv
 BIN = $(VENV)/bin
 EXTRAS = video,optimize,cluster,report,test,lint
 
-.PHONY: demo test test-long lint format benchmark catalogue clean
+.PHONY: demo test test-long lint format benchmark catalogue models readers clean
 
 demo: $(VENV)/.ready
 	mkdir -p demo
@@ -35,6 +35,14 @@ catalogue: $(VENV)/.ready
 	$(BIN)/python tools/make_catalogue.py
 	$(BIN)/python tools/reconstruct_moments.py
 
+# The exported models of the five designs, in mjcf/.
+models: $(VENV)/.ready
+	$(BIN)/python tools/make_models.py
+
+# Install the other readers of the models, each into an environment of its own, and compare them with MuJoCo.
+readers: $(VENV)/.ready
+	$(BIN)/python tools/conformance.py --build
+
 $(VENV)/.ready: pyproject.toml constraints.txt
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
 		{ echo "Python 3.11 or newer is needed; name one with make PYTHON=python3.12 ..."; exit 1; }
@@ -45,4 +53,4 @@ $(VENV)/.ready: pyproject.toml constraints.txt
 	touch $@
 
 clean:
-	rm -rf $(VENV) demo
+	rm -rf $(VENV) .readers demo

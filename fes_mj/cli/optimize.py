@@ -312,7 +312,7 @@ def _print(winner: Winner, task: Problem, x: Any, method: str, evaluations: int,
 
 def _write(design: Design, front: Front | None, out: Path, told: str) -> dict[str, str]:
     """Design file, model, and the front as CSV; each whole or not at all."""
-    from fes_mj.mjcf import mjcf_text
+    from fes_mj.export import mjcf_text
     from fes_mj.optimization.problem_file import VARIABLES
 
     write_text(out, design_toml(design, told))

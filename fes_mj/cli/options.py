@@ -28,8 +28,8 @@ class Loaded(NamedTuple):
 
 @Parameter(name="*")
 @dataclass
-class RunOptions:
-    """Options of every command that needs joint moments.
+class LoadOptions:
+    """Options of every command that needs a design in motion.
 
     Parameters
     ----------
@@ -41,21 +41,12 @@ class RunOptions:
         Crank speed in rpm; by default the one at which the tricycle does 5.71 km/h.
     dims
         Dimensions of a catalogued design: as identified, or as the paper prints them.
-    json
-        Print one JSON object and nothing else.
-    quiet
-        Print nothing but errors.
-    verbose
-        Print more: energies and joint forces.
     """
 
     group: Literal["p1p2", "p1p3"] | None = None
     moments: Path | None = None
     cadence: float | None = None
     dims: Literal["identified", "printed"] = "identified"
-    json: Annotated[bool, Parameter(negative="")] = False
-    quiet: Annotated[bool, Parameter(alias="-q", negative="")] = False
-    verbose: Annotated[bool, Parameter(alias="-v", negative="")] = False
 
     def load(self, design: str) -> Loaded:
         """Load everything the options name. Raises InputError for what cannot be used."""
@@ -64,6 +55,26 @@ class RunOptions:
         loaded = load_design(design, self.dims)
         moments = load_moments(self.moments or self.group or "p1p2")
         return Loaded(loaded, moments, crank_speed(self.cadence, loaded))
+
+
+@Parameter(name="*")
+@dataclass
+class RunOptions(LoadOptions):
+    """Options of every command that runs a design.
+
+    Parameters
+    ----------
+    json
+        Print one JSON object and nothing else.
+    quiet
+        Print nothing but errors.
+    verbose
+        Print more: energies and joint forces.
+    """
+
+    json: Annotated[bool, Parameter(negative="")] = False
+    quiet: Annotated[bool, Parameter(alias="-q", negative="")] = False
+    verbose: Annotated[bool, Parameter(alias="-v", negative="")] = False
 
 
 def crank_speed(cadence: float | None, design: Design) -> float:

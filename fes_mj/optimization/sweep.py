@@ -153,7 +153,7 @@ def _dynamic(
         cadence = point["cadence_rpm"] * math.pi / 30 if "cadence_rpm" in point else None
         try:
             run = simulate(vary(design, point), moments, cadence=cadence, timestep=timestep, compiled=True)
-        except UnstableError:
+        except (UnstableError, InputError):  # it breaks down, or closes too narrowly to be built
             continue
         for name, value in zip(result, (run.power_mean, run.loop_gap_max, run.cadence_ripple), strict=True):
             result[name][row] = value
