@@ -4,7 +4,7 @@ VENV ?= .venv
 BIN = $(VENV)/bin
 EXTRAS = video,optimize,cluster,report,test,lint
 
-.PHONY: demo test test-long lint format benchmark catalogue models readers clean
+.PHONY: demo test test-long lint format benchmark catalogue verification models readers clean
 
 demo: $(VENV)/.ready
 	mkdir -p demo
@@ -29,6 +29,11 @@ format: $(VENV)/.ready
 benchmark: $(VENV)/.ready
 	$(BIN)/pip install --quiet -c constraints.txt -e '.[benchmark]'
 	$(BIN)/python tools/benchmark.py
+	$(BIN)/python -m tools.benchmark_optimization
+
+# Every check on every design, refined, with all faults injected: results/verification.md
+verification: $(VENV)/.ready
+	$(BIN)/python tools/update_verification.py
 
 # What the package ships as data: the identified designs and the recovered moments.
 catalogue: $(VENV)/.ready

@@ -36,7 +36,7 @@ FLOOR_GAP = 0.1  # m below the lowest point of the turn
 
 # Attribute -> the comment above its first line.
 _COMMENTS = {
-    'integrator="discrete"': "A turn is a whole number of steps. `discrete` (MuJoCo 3.13) bears the stiff servo.",
+    'integrator="discrete"': "A turn is whole steps; `discrete` (MuJoCo 3.13 or newer) bears the stiff servo.",
     "<geom contype": "Geoms are pictures: they neither weigh nor touch.",
     "<equality solref": "With MuJoCo's defaults the loops open by millimetres and the mean power falls by up to 43 %.",
     "<inertial": "Planar: only the moment about y acts; the other two repeat it.",

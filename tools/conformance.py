@@ -2,20 +2,22 @@
 
     python tools/conformance.py [--build] [READER ...]
 
-A reader runs in its environment .readers/READER, which --build makes; without one it is left out. Exit code 1 if a
-reader does not keep what it can be held to.
+A reader runs in its environment .readers/READER, which --build makes; without one it is left out, and the results are
+only printed. Exit code 1 if a reader does not keep what it can be held to.
 """
 
 from __future__ import annotations
 
 import json
 import math
+import shutil
 import subprocess
 import sys
 import tempfile
 import tomllib
 import venv
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -155,12 +157,16 @@ def interpreter(name: str) -> Path | None:
 
 
 def build(name: str) -> None:
-    """Make a reader's environment and install the reader from the package index."""
+    """Make a reader's environment and install the reader in it; on any failure there is no environment."""
     extras = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["optional-dependencies"]
     reader = READERS[name]
     requirements = [*reader.requirements] or [*extras[name], "-c", str(ROOT / "constraints.txt")]
-    venv.create(ENVIRONMENTS / name, with_pip=True, clear=True)
-    subprocess.run([ENVIRONMENTS / name / "bin" / "pip", "install", "--quiet", *requirements], check=True)
+    try:
+        venv.create(ENVIRONMENTS / name, with_pip=True, clear=True)
+        subprocess.run([ENVIRONMENTS / name / "bin" / "pip", "install", "--quiet", *requirements], check=True)
+    except BaseException:
+        shutil.rmtree(ENVIRONMENTS / name, ignore_errors=True)
+        raise
 
 
 def jobs(designs: Iterable[Design], folder: Path) -> list[dict[str, Any]]:
@@ -291,13 +297,14 @@ def main() -> int:
         references = reference(designs, tasks)
         for name in progress.track(chosen, description="readers"):
             if "--build" in sys.argv and interpreter(name) is None:
-                build(name)
+                with suppress(subprocess.CalledProcessError):  # pip has said why
+                    build(name)
             if interpreter(name) is None:
-                console.print(f"{name}: not installed, left out; --build installs it")
+                console.print(f"{name}: not installed, left out; --build installs it where it can be had")
             else:
                 found += rows(name, designs, tasks, references)
     print(table(found))
-    if not arguments:
+    if {row.reader for row in found} == {*READERS}:
         record = {"provenance": provenance(), "rows": [asdict(row) | {"ok": row.ok} for row in found]}
         write_text(RESULTS / "readers.json", json_text(record))
         write_text(RESULTS / "readers.md", _HEADING + table(found))
