@@ -2,7 +2,7 @@
 PYTHON ?= python3
 VENV ?= .venv
 BIN = $(VENV)/bin
-EXTRAS = video,report,test,lint
+EXTRAS = video,optimize,cluster,report,test,lint
 
 .PHONY: demo test test-long lint format benchmark catalogue verification models readers clean
 
@@ -29,6 +29,7 @@ format: $(VENV)/.ready
 benchmark: $(VENV)/.ready
 	$(BIN)/pip install --quiet -c constraints.txt -e '.[benchmark]'
 	$(BIN)/python tools/benchmark.py
+	$(BIN)/python -m tools.benchmark_optimization
 
 # Every check on every design, refined, with all faults injected: results/verification.md
 verification: $(VENV)/.ready

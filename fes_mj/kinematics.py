@@ -35,12 +35,11 @@ def _close_dyad(start: Any, end: Any, first: Any, second: Any) -> Any:
     inverse_square = span.real**2
     inverse_square += span.imag**2
     np.reciprocal(inverse_square, out=inverse_square)
-    across = inverse_square * first**2
     along = inverse_square * ((first**2 - second**2) / 2)
     along += 0.5
-    across -= along**2
+    across = inverse_square * first**2 - along**2
     np.sqrt(across, out=across)
-    joint = np.empty_like(span)
+    joint = np.empty(across.shape, complex)
     joint.real, joint.imag = along, across
     joint *= span
     joint += start

@@ -61,6 +61,7 @@ def build_mjcf(
     anchors: Literal["sites", "bodies"] = "sites",
     driven: bool = True,
     integrator: Literal["discrete", "euler"] = "discrete",
+    drawn: bool = True,
 ) -> mujoco.MjSpec:
     """The model of a design at a cadence (rad/s, by default Eq. 16), assembled, with a keyframe at crank angle 0.
 
@@ -68,6 +69,7 @@ def build_mjcf(
     loop_solref: MuJoCo's time constant (s) and damping ratio of the loops, by default LOOP_SOLREF.
     anchors: what the loops are closed between. driven: with joint motors and a cadence that is held, by a servo or,
     with integrator "euler", which a stiff servo makes unstable, by a flywheel.
+    drawn: with geoms, which are pictures only and cost a fifth of a step.
     Raises AssemblyError if the linkage does not close, InputError if MuJoCo refuses it.
     """
     kinematics.require_assembly(design)
@@ -91,7 +93,8 @@ def build_mjcf(
         start = _start_state(design, leg, cadence)
         _add_leg(spec, root, design, leg, masses, start, anchors)
         state |= {leg.prefix + joint: values for joint, values in start.items()}
-    appearance.draw(spec, design, LEGS[legs])
+    if drawn:
+        appearance.draw(spec, design, LEGS[legs])
     if driven:
         _add_motors(spec, LEGS[legs])
         _hold_cadence(spec, integrator)

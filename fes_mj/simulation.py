@@ -95,10 +95,12 @@ def simulate(
     mass_scale: float = 1.0,
     gravity: float = GRAVITY,
     loop_solref: tuple[float, float] | None = None,
+    compiled: bool = False,
 ) -> Simulation:
     """Run whole turns of the model of build_mjcf (same arguments) under the torque map of `moments`.
 
-    Raises AssemblyError if the linkage does not close, UnstableError if the integration breaks down.
+    compiled: step in machine code, which pays beyond some hundred turns. Raises AssemblyError if the linkage does not
+    close, UnstableError if the integration breaks down, MissingPartError if compiled and numba is not there.
     """
     cadence = design.linkage.cadence if cadence is None else cadence
     spec = build_mjcf(
@@ -109,10 +111,16 @@ def simulate(
         mass_scale=mass_scale,
         gravity=gravity,
         loop_solref=loop_solref,
+        drawn=False,
     )
     model, steps = spec.compile(), turns * steps_per_turn(cadence, timestep)
     drives, torque_map = joint_drives(LEGS[legs]), TorqueMap(moments)
-    run = run_steps(model, {name: torque_map.feedback(joint) for name, joint in drives.items()}, steps)
+    if compiled:
+        from fes_mj.compiled import compiled_loop
+
+        run = run_loop(model, compiled_loop(torque_map, drives), steps)
+    else:
+        run = run_steps(model, {name: torque_map.feedback(joint) for name, joint in drives.items()}, steps)
 
     column = {model.sensor(i).name: int(model.sensor(i).adr[0]) for i in range(model.nsensor)}
     rows, loops = run.sensors[:steps], [model.equality(i).name for i in range(model.neq)]
@@ -167,6 +175,11 @@ class Run(NamedTuple):
     fields: dict[str, NDArray[np.float64]]
 
 
+# Steps a model so many times; gives the sensor rows of each step and the recorded fields of some.
+Records = dict[str, NDArray[np.float64]]
+Loop = Callable[[mujoco.MjModel, mujoco.MjData, int], tuple[NDArray[np.float64], Records]]
+
+
 def run_steps(
     model: mujoco.MjModel,
     feedback: dict[str, Callable[[float, float], float]],
@@ -178,18 +191,13 @@ def run_steps(
 
     record: fields of MjData to read, each of constant size, after the first and then after each `every` steps.
     """
-    data = mujoco.MjData(model)
-    mujoco.mj_resetDataKeyframe(model, data, 0)
-    # plain floats through memory views and rows as bytes cost half of numpy scalars and row assignment
-    qpos, qvel = memoryview(data.qpos), memoryview(data.qvel)
-    ctrl: Any = memoryview(data.ctrl)
-    drives = [
-        (int(model.actuator(name).id), int(model.joint(name).qposadr[0]), int(model.joint(name).dofadr[0]), moment)
-        for name, moment in feedback.items()
-    ]
 
-    def advance(count: int) -> Run:
-        start, step, read = _energy(model, data), mujoco.mj_step, data.sensordata.tobytes
+    def loop(model: mujoco.MjModel, data: mujoco.MjData, count: int) -> tuple[NDArray[np.float64], Records]:
+        # plain floats through memory views and rows as bytes cost half of numpy scalars and row assignment
+        qpos, qvel = memoryview(data.qpos), memoryview(data.qvel)
+        ctrl: Any = memoryview(data.ctrl)
+        drives = [(*drive_addresses(model, name), moment) for name, moment in feedback.items()]
+        step, read = mujoco.mj_step, data.sensordata.tobytes
         sensors: list[bytes] = []
         fields: dict[str, list[bytes]] = {name: [] for name in record}
         for number in range(count):
@@ -200,6 +208,27 @@ def run_steps(
             if not number % every:
                 for name, rows in fields.items():
                     rows.append(getattr(data, name).tobytes())
+        return _matrix(sensors), {name: _matrix(rows) for name, rows in fields.items()}
+
+    return run_loop(model, loop, steps)
+
+
+def drive_addresses(model: mujoco.MjModel, name: str) -> tuple[int, int, int]:
+    """Index of the motor of a joint in ctrl, of the joint in qpos and in qvel."""
+    joint = model.joint(name)
+    return int(model.actuator(name).id), int(joint.qposadr[0]), int(joint.dofadr[0])
+
+
+def run_loop(model: mujoco.MjModel, loop: Loop, steps: int) -> Run:
+    """Pre-roll from the keyframe, then record so many steps of `loop`. Raises UnstableError."""
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    previous = mujoco.get_mju_user_warning()
+    mujoco.set_mju_user_warning(lambda _: None)  # MuJoCo would write MUJOCO_LOG.TXT into the user's folder
+    try:
+        loop(model, data, PRE_ROLL)
+        start = _energy(model, data)
+        sensors, fields = loop(model, data, steps)
         if any(warning.number for warning in data.warning):
             raise UnstableError(
                 f"{model.names[: model.names.index(0)].decode()}: the simulation became unstable "
@@ -207,16 +236,9 @@ def run_steps(
             )
         end = _energy(model, data)
         mujoco.mj_forward(model, data)
-        sensors.append(read())
-        return Run(_matrix(sensors), start, end, {name: _matrix(rows) for name, rows in fields.items()})
-
-    previous = mujoco.get_mju_user_warning()
-    mujoco.set_mju_user_warning(lambda _: None)  # MuJoCo would write MUJOCO_LOG.TXT into the user's folder
-    try:
-        advance(PRE_ROLL)
-        return advance(steps)
     finally:
         mujoco.set_mju_user_warning(previous)
+    return Run(np.vstack([sensors, data.sensordata]), start, end, fields)
 
 
 def _matrix(rows: list[bytes]) -> NDArray[np.float64]:

@@ -11,6 +11,7 @@ import csv
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -63,7 +64,10 @@ class TorqueMap:
 
     def moment(self, joint: str, angle: Any, rate: Any) -> Any:
         """Moment in N m, any shape. angle: rad. rate: of any unit, its sign is the direction, zero is extension."""
-        source = source_angle(joint, angle, rate)
+        return self.at_source(joint, source_angle(joint, angle, rate))
+
+    def at_source(self, joint: str, source: Any) -> Any:
+        """Moment in N m at crank angles of the reference TRT, rad from top dead centre, any shape."""
         position = np.mod(source, 2 * np.pi) * (TABLE_SIZE / (2 * np.pi))
         index = np.nan_to_num(position).astype(np.int64)
         table = self._tables[joint]
@@ -71,19 +75,32 @@ class TorqueMap:
 
     def feedback(self, joint: str) -> Callable[[float, float], float]:
         """The same map for plain floats, (angle, rate) -> moment; twenty times faster for one value at a time."""
-        table = self._tables[joint].tolist()
-        source, scale = _INVERSES[joint](math, _acos_float), TABLE_SIZE / (2 * math.pi)
-        low, high = reference_ranges()[joint]
+        return partial(scalar_map(joint, _acos_float), self._tables[joint].tolist())
 
-        def moment(angle: float, rate: float) -> float:
-            angle = low if angle < low else high if angle > high else angle
-            position = source(angle, 1.0 if rate >= 0 else -1.0) * scale
-            if position < 0:
-                position += TABLE_SIZE
-            index = int(position)
-            return table[index] + (position - index) * (table[index + 1] - table[index])
+    def table(self, joint: str) -> NDArray[np.float64]:
+        """Moment at every step of the uniform grid of crank angles, N m, as scalar_map takes it."""
+        return self._tables[joint]
 
-        return moment
+
+def scalar_map(
+    joint: str, acos: Callable[[float], float], compiled: Callable[[Any], Any] = lambda function: function
+) -> Callable[[Any, float, float], float]:
+    """The map of any moments for plain floats: (table, angle, rate) -> moment.
+
+    acos: takes a rounding error beyond -1 or 1. compiled: what turns Python functions into machine code.
+    """
+    source, scale = compiled(_INVERSES[joint](math, acos)), TABLE_SIZE / (2 * math.pi)
+    low, high = reference_ranges()[joint]
+
+    def moment(table: Any, angle: float, rate: float) -> float:
+        angle = low if angle < low else high if angle > high else angle
+        position = source(angle, 1.0 if rate >= 0 else -1.0) * scale
+        if position < 0:
+            position += TABLE_SIZE
+        index = int(position)
+        return table[index] + (position - index) * (table[index + 1] - table[index])
+
+    return compiled(moment)
 
 
 def source_angle(joint: str, angle: Any, rate: Any) -> Any:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import json
 import math
 import sys
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from typing import Any, TypeVar
 
 from rich.box import SIMPLE_HEAD
@@ -50,6 +51,22 @@ def print_table(title: str, columns: Sequence[str], rows: Iterable[Sequence[str]
     for row in rows:
         table.add_row(*row)
     output.print(table)
+
+
+@contextmanager
+def progress_bar(what: str, total: int, silent: bool, done: int = 0) -> Iterator[Callable[[int], None]]:
+    """A bar on standard error with rate and time left; call what it gives with the number of steps just made."""
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, ProgressColumn, Task, TimeRemainingColumn
+    from rich.text import Text
+
+    class Rate(ProgressColumn):
+        def render(self, task: Task) -> Text:
+            return Text(f"{task.speed:,.3g}/s" if task.speed else "")
+
+    columns = ("{task.description}", BarColumn(), MofNCompleteColumn(), Rate(), TimeRemainingColumn())
+    with Progress(*columns, console=errors, transient=True, disable=silent) as bars:
+        task = bars.add_task(what, total=total, completed=done)
+        yield lambda steps: bars.update(task, advance=steps)
 
 
 def number(value: float, unit: str = "") -> str:

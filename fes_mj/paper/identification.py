@@ -7,6 +7,7 @@ lengths with the eight range limits of Table 1 and the Grashof condition as cons
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -80,9 +81,9 @@ def joint_ranges(design: Design, crank_angle: NDArray[np.float64] = kinematics.F
     return np.degrees(np.stack([f(angle, axis=-1) for angle in angles for f in (np.min, np.max)], axis=-1))
 
 
-def grashof_margin(linkage: Linkage) -> float:
+def grashof_margin(linkage: Linkage) -> Any:
     """Grashof's inequality with the crank as shortest link: sum of the other two minus crank and longest link, m."""
-    others = sorted([abs(linkage.pivot_to_crank), linkage.coupler, linkage.rocker])
+    others = np.sort(np.stack([np.abs(linkage.pivot_to_crank), linkage.coupler, linkage.rocker]), axis=0)
     return others[0] + others[1] - others[2] - linkage.crank
 
 

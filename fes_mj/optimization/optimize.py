@@ -1,0 +1,85 @@
+"""One call for every single-objective method: independent searches over seeds, side by side, the best of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fes_mj.errors import InputError
+from fes_mj.optimization.evolution import cma_es, differential
+from fes_mj.optimization.parallel import HERE, Workers, run_tasks
+from fes_mj.optimization.problem import Problem
+from fes_mj.optimization.random_pursuit import random_pursuit
+from fes_mj.optimization.search import BudgetSpentError, Result, Search, feasible_start, require_feasible
+
+Start = NDArray[np.float64] | None
+
+
+def _pursue(search: Search, start: Start, random: np.random.Generator) -> None:
+    random_pursuit(search, feasible_start(search, random) if start is None else start, random)
+
+
+Method = Callable[[Search, Start, np.random.Generator], None]
+METHODS: dict[str, Method] = {
+    "differential-evolution": differential,
+    "cma-es": cma_es,
+    "random-pursuit": _pursue,
+}
+# Of one search. Random pursuit stops by itself, after 0.04 to 1 million trials.
+BUDGETS = {"differential-evolution": 50_000, "cma-es": 50_000, "random-pursuit": 5_000_000}
+
+
+@dataclass(frozen=True)
+class _Task:
+    problem: Problem
+    method: str
+    budget: int
+    start: Start
+    seed: np.random.SeedSequence
+
+
+def search_once(task: _Task) -> Result | InputError:
+    """One search from its own random numbers; an error, as a value, if it found nothing feasible."""
+    search = Search(task.problem, task.budget)
+    with suppress(BudgetSpentError):
+        METHODS[task.method](search, task.start, np.random.default_rng(task.seed))
+    try:
+        return search.result()
+    except InputError as error:
+        return error
+
+
+def optimize(
+    problem: Problem,
+    method: str,
+    *,
+    searches: int = 1,
+    budget: int | None = None,
+    seed: int = 0,
+    start: Start = None,
+    workers: Workers = HERE,
+    progress: Callable[[int], None] | None = None,
+) -> list[Result]:
+    """Independent searches, best first; the outcome does not depend on where they run.
+
+    budget: evaluations of each search. start: ten variables, feasible; by default random. Raises InputError if the
+    start is infeasible, or no search finds anything feasible. progress is told how many searches are done.
+    """
+    if start is not None:
+        require_feasible(problem, start, problem.template.name)
+    seeds = np.random.SeedSequence(seed).spawn(searches)
+    tasks = [_Task(problem, method, budget or BUDGETS[method], start, each) for each in seeds]
+    outcomes: dict[int, Result | InputError] = {}
+    for index, outcome in run_tasks(search_once, tasks, workers):
+        outcomes[index] = outcome
+        if progress:
+            progress(len(outcomes))
+    ordered = [outcomes[index] for index in range(searches)]
+    results = [outcome for outcome in ordered if isinstance(outcome, Result)]
+    if not results:
+        raise next(outcome for outcome in ordered if isinstance(outcome, InputError))
+    return sorted(results, key=lambda result: -result.merit)

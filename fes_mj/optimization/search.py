@@ -1,0 +1,107 @@
+"""What all single-objective methods share: a counted, remembered evaluation, and the result."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fes_mj.errors import InputError
+from fes_mj.optimization.problem import LENGTHS, Problem
+
+Progress = Callable[[int, float], None]  # evaluations so far, best merit
+_SAMPLE = 2000
+
+
+class BudgetSpentError(Exception):
+    """Ends a method when its evaluations are used up."""
+
+
+@dataclass(frozen=True)
+class Result:
+    """Outcome of one search.
+
+    x: shape (10,). merit: see Problem.merit. history: evaluations and merit at each improvement, shape (k, 2).
+    """
+
+    x: NDArray[np.float64]
+    merit: float
+    evaluations: int
+    history: NDArray[np.float64]
+
+
+class Search:
+    """Evaluates populations for a method, counts, remembers the best. Raises BudgetSpentError at the budget's end."""
+
+    def __init__(self, problem: Problem, budget: int, progress: Progress | None = None) -> None:
+        self.problem, self.budget, self.evaluations = problem, budget, 0
+        self.best_x, self.best = np.full(LENGTHS + 1, np.nan), -np.inf
+        self._history: list[tuple[int, float]] = []
+        self._progress = progress
+
+    def __call__(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Merit of each row of x, shape (n, 9) or (n, 10); see Problem.evaluate."""
+        rest = self.budget - self.evaluations
+        if rest <= 0:
+            raise BudgetSpentError
+        evaluation = self.problem.evaluate(x[:rest])
+        merit = self.problem.merit(evaluation)
+        self.note(evaluation.x, merit)
+        if len(x) > rest:
+            raise BudgetSpentError
+        return merit
+
+    def note(self, x: NDArray[np.float64], merit: NDArray[np.float64]) -> None:
+        """Count evaluations made elsewhere; x of shape (n, 10) in the order they were made."""
+        top = int(np.argmax(merit))
+        if merit[top] > self.best:
+            self.best, self.best_x = float(merit[top]), x[top].copy()
+            self._history.append((self.evaluations + top + 1, self.best))
+        self.evaluations += len(merit)
+        if self._progress:
+            self._progress(self.evaluations, self.best)
+
+    def result(self) -> Result:
+        """The best design so far. Raises InputError, saying what stood in the way, if none was feasible."""
+        evaluation = self.problem.evaluate(self.best_x[None])
+        if not evaluation.feasible[0]:
+            broken = ", ".join(
+                f"{v['name']} is {v['value']:.4g} {v['unit']} (limit {v['limit']:.4g})".replace("  ", " ")
+                for v in self.problem.violations(evaluation)
+            )
+            kind = self.problem.template.linkage.kind
+            raise InputError(
+                f"no feasible {kind} found in {self.evaluations} evaluations; the closest "
+                f"violates: {broken or 'assembly'}. Loosen a limit, widen the design space or raise --budget"
+            )
+        return Result(self.best_x, self.best, self.evaluations, np.array(self._history))
+
+
+def feasible_start(search: Search, random: np.random.Generator) -> NDArray[np.float64]:
+    """A random feasible design, ten variables, from the search ranges; every design tried until then is counted.
+
+    Raises BudgetSpentError if none turns up within the budget.
+    """
+    low, high = search.problem.limits.search.T
+    while search.evaluations < search.budget:
+        x = random.uniform(low, high, (min(_SAMPLE, search.budget - search.evaluations), len(low)))
+        evaluation = search.problem.evaluate(x)
+        found = evaluation.feasible.any()
+        used = int(np.argmax(evaluation.feasible)) + 1 if found else len(x)
+        search.note(evaluation.x[:used], search.problem.merit(evaluation)[:used])
+        if found:
+            return evaluation.x[used - 1]
+    raise BudgetSpentError
+
+
+def require_feasible(problem: Problem, x: NDArray[np.float64], name: str) -> None:
+    """Raise InputError naming the violated constraints if a start, shape (10,), is not feasible."""
+    evaluation = problem.evaluate(x[None])
+    if not evaluation.feasible[0]:
+        broken = "; ".join(
+            f"{v['name']} is {v['value']:.4g} {v['unit']}, limit {v['limit']:.4g}".replace(" ,", ",")
+            for v in problem.violations(evaluation)
+        )
+        raise InputError(f"the start {name} is not feasible: {broken or 'it does not close over the whole turn'}")

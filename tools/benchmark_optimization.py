@@ -1,0 +1,223 @@
+"""Speed of optimisation and sweeps, in ratios within one run.
+
+Power evaluations beside scipy's fsolve in a loop over crank angles and beside pylinkage's kinematics alone; simulated
+turns of the batch path beside the single path and beside a bare mujoco.rollout of the same models. Needs the extras
+"benchmark" and "optimize". Prints a table and writes results/benchmark_optimization.json.
+"""
+
+import cmath
+import math
+import time
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import mujoco
+import numpy as np
+from mujoco import rollout
+from scipy.optimize import fsolve
+
+from fes_mj.cli.output import json_text, print_table
+from fes_mj.compiled import compiled_loop
+from fes_mj.design import LEGS, Design
+from fes_mj.design_file import load_design
+from fes_mj.files import write_text
+from fes_mj.mjcf import build_mjcf, steps_per_turn
+from fes_mj.optimization.cycles import TURN_POINTS, WorkTable, cycles, joint_speeds
+from fes_mj.optimization.problem import Problem
+from fes_mj.optimization.problem_file import load_limits
+from fes_mj.paper.identification import pack, unpack
+from fes_mj.provenance import provenance
+from fes_mj.simulation import joint_drives, simulate
+from fes_mj.torque import REFERENCE, TorqueMap, joint_angles, load_moments
+from tools.benchmark import pylinkage_six_bar, rates
+
+DESIGNS, TURNS, THREADS = 2000, 16, 2
+MOMENTS = load_moments("p1p2")
+
+
+def population(design: Design, count: int, step: float = 0.002) -> Design:
+    """Designs around one, all of which turn."""
+    lengths = pack(design.linkage)[:, None] + np.random.default_rng(0).uniform(-step, step, (9, 2 * count))
+    batch = replace(design, linkage=unpack(design.linkage, lengths[..., None]))
+    turning = np.flatnonzero(cycles(batch, WorkTable.of(MOMENTS)).reach > 0)[:count]
+    return replace(design, linkage=unpack(design.linkage, lengths[:, turning, None]))
+
+
+class ByHand:
+    """The power of a CDT as one would write it without this package: fsolve at each of 360 crank angles, one table
+    of moments over joint angle for each direction, virtual work.
+    """
+
+    def __init__(self, design: Design) -> None:
+        from fes_mj import kinematics
+
+        self.design = design
+        crank_angle = np.radians(np.arange(360.0))
+        motion = kinematics.solve(REFERENCE, crank_angle)
+        torque_map = TorqueMap(MOMENTS)
+        self.tables: dict[tuple[str, bool], tuple[Any, Any]] = {}
+        for joint, (angle, rate) in joint_angles(motion).items():
+            for extending in (True, False):
+                part = (rate >= 0) == extending
+                order = np.argsort(angle[part])
+                moment = torque_map.moment(joint, angle[part], rate[part])
+                self.tables[joint, extending] = angle[part][order], moment[order]
+        start = kinematics.positions(design, np.zeros(1))
+        legs = (
+            start["rocker_joint"] - start["rocker_pivot"],
+            start["crank_pin"] - start["rocker_joint"],
+            start["pedal"] - start["knee"],
+            start["knee"],
+        )
+        self.guess = [float(np.angle(leg[0])) for leg in legs]
+
+    def closure(self, angles: Any, theta2: float) -> list[float]:
+        crank, rocker, coupler, shank, thigh = (cmath.rect(1, angle) for angle in (theta2, *angles))
+        linkage, rider = self.design.linkage, self.design.rider
+        pedal_arm = linkage.pedal_arm * coupler * cmath.rect(1, linkage.coupler_angle)
+        crank_loop = (
+            linkage.pivot_to_crank + linkage.crank * crank - linkage.rocker * rocker - linkage.coupler * coupler
+        )
+        leg = float(self.design.knee_to_pedal) * shank + rider.thigh * thigh
+        leg_loop = linkage.ground + linkage.rocker * rocker + pedal_arm - leg
+        return [crank_loop.real, crank_loop.imag, leg_loop.real, leg_loop.imag]
+
+    def power(self) -> float:
+        solutions, guess = [], self.guess
+        for degree in range(360):
+            guess = fsolve(self.closure, guess, args=(math.radians(degree),))
+            solutions.append(guess)
+        _, _, shank, thigh = np.unwrap(np.array(solutions), axis=0).T
+        angles = {
+            "knee": math.pi - shank + thigh - float(self.design.boot_angle),
+            "hip": thigh - self.design.linkage.seat_angle,
+        }
+        work = 0.0
+        for joint, angle in angles.items():
+            angle = angle - 2 * math.pi * np.round((angle[0] - 1.7) / (2 * math.pi))
+            rate = (np.roll(angle, -1) - np.roll(angle, 1)) / (2 * math.radians(1))
+            for extending in (True, False):
+                part = (rate >= 0) == extending
+                work += float(np.sum(np.interp(angle[part], *self.tables[joint, extending]) * rate[part]))
+        return work / 360 * self.design.linkage.cadence
+
+
+def evaluations() -> dict[str, np.ndarray]:
+    """Power evaluations of a CDT per second on one core."""
+    design, table = load_design("d1"), WorkTable.of(MOMENTS)
+    by_hand, step_fast = ByHand(design), pylinkage_six_bar(design)
+    exact = cycles(design, table).work[0, 0] * design.linkage.cadence / (2 * math.pi)
+    assert abs(by_hand.power() / exact - 1) < 2e-3, "not the same power"
+    batch = population(design, DESIGNS)
+    speeds = joint_speeds(design, table)
+    problem = Problem(design, table, load_limits(), speeds["knee"], speeds["hip"])
+    lengths = np.array([np.ravel(column) for column in pack_batch(batch)]).T
+    return rates(
+        {
+            f"ours, work of a turn from {TURN_POINTS} angles": (DESIGNS, lambda: cycles(batch, table)),
+            "ours, with all constraints": (DESIGNS, lambda: problem.evaluate(lengths)),
+            f"pylinkage step_fast, kinematics of {TURN_POINTS} angles": (
+                DESIGNS,
+                lambda: step_fast(DESIGNS * TURN_POINTS),
+            ),
+            "pylinkage step_fast, kinematics of 360 angles": (DESIGNS // 4, lambda: step_fast(DESIGNS // 4 * 360)),
+            "fsolve at 360 angles": (2, lambda: [by_hand.power() for _ in range(2)]),
+        }
+    )
+
+
+def pack_batch(batch: Design) -> list[Any]:
+    """The nine lengths of a batch of designs."""
+    linkage = batch.linkage
+    return [
+        np.real(linkage.ground),
+        np.imag(linkage.ground),
+        linkage.crank,
+        linkage.foot,
+        np.real(linkage.pivot_to_crank),
+        np.imag(linkage.pivot_to_crank),
+        linkage.pedal_arm,
+        linkage.coupler,
+        linkage.rocker,
+    ]
+
+
+def simulated() -> dict[str, np.ndarray]:
+    """Simulated turns of D1 with riders of different mass per second."""
+    riders = [replace(load_design("d1"), rider=replace(load_design("d1").rider, mass=60.0 + i)) for i in range(TURNS)]
+    steps = steps_per_turn(riders[0].linkage.cadence)
+    models = [build_mjcf(design, drawn=False).compile() for design in riders]
+    loop = compiled_loop(TorqueMap(MOMENTS), joint_drives(LEGS[1]))
+    full = mujoco.mjtState.mjSTATE_FULLPHYSICS
+    states = np.empty((TURNS, mujoco.mj_stateSize(models[0], full)))
+    control = np.zeros((TURNS, steps, models[0].nu))
+    for model, state, given in zip(models, states, control, strict=True):
+        data = mujoco.MjData(model)
+        mujoco.mj_resetDataKeyframe(model, data, 0)
+        mujoco.mj_getState(model, data, state, full)
+        given[:] = data.ctrl
+    workspace = [mujoco.MjData(models[0]) for _ in range(THREADS)]
+
+    def fed_back(model: mujoco.MjModel) -> None:
+        data = mujoco.MjData(model)
+        mujoco.mj_resetDataKeyframe(model, data, 0)
+        loop(model, data, steps)
+
+    def threads(function: Any, items: Any) -> None:
+        with ThreadPoolExecutor(THREADS) as pool:
+            list(pool.map(function, items))
+
+    return rates(
+        {
+            "single path: simulate": (TURNS, lambda: [simulate(design, MOMENTS) for design in riders]),
+            "batch path: simulate, compiled": (
+                TURNS,
+                lambda: [simulate(design, MOMENTS, compiled=True) for design in riders],
+            ),
+            "stepping of the batch path, one thread": (TURNS, lambda: list(map(fed_back, models))),
+            "bare rollout, one thread": (
+                TURNS,
+                lambda: rollout.rollout(models, workspace[:1], states, control, nstep=steps),
+            ),
+            f"stepping of the batch path, {THREADS} threads": (TURNS, lambda: threads(fed_back, models)),
+            f"bare rollout, {THREADS} threads": (
+                TURNS,
+                lambda: rollout.rollout(models, workspace, states, control, nstep=steps),
+            ),
+        }
+    )
+
+
+RATIOS = (
+    ("ours, with all constraints", "fsolve at 360 angles"),
+    (f"ours, work of a turn from {TURN_POINTS} angles", f"pylinkage step_fast, kinematics of {TURN_POINTS} angles"),
+    (f"ours, work of a turn from {TURN_POINTS} angles", "pylinkage step_fast, kinematics of 360 angles"),
+    ("batch path: simulate, compiled", "single path: simulate"),
+    ("batch path: simulate, compiled", "bare rollout, one thread"),
+    ("stepping of the batch path, one thread", "bare rollout, one thread"),
+    (f"stepping of the batch path, {THREADS} threads", f"bare rollout, {THREADS} threads"),
+)
+
+
+def main() -> None:
+    """Run everything, print tables, write the results."""
+    started = time.perf_counter()
+    measured = evaluations() | simulated()
+    print_table(
+        "Rates, median of one run", ("", "per second"), [(n, f"{np.median(v):,.3g}") for n, v in measured.items()]
+    )
+    ratios = {f"{first} / {second}": float(np.median(measured[first] / measured[second])) for first, second in RATIOS}
+    print_table("Ratios", ("", "ratio"), [(name, f"{ratio:,.3g}") for name, ratio in ratios.items()])
+    content = {
+        "provenance": provenance(),
+        "seconds": time.perf_counter() - started,
+        "median_per_s": {name: float(np.median(values)) for name, values in measured.items()},
+        "ratios": ratios,
+    }
+    write_text(Path("results/benchmark_optimization.json"), json_text(content))
+
+
+if __name__ == "__main__":
+    main()
