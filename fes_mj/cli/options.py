@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Literal, NamedTuple
 
@@ -13,6 +13,7 @@ from fes_mj.design import Design
 from fes_mj.design_file import load_design
 from fes_mj.errors import InputError
 from fes_mj.torque import JointMoments, load_moments
+from fes_mj.torque_velocity import load_torque_velocity
 
 HIGHEST_CADENCE = 300.0  # rpm, twice what sprinters reach
 
@@ -40,6 +41,8 @@ class RunOptions:
         Crank speed in rpm; by default the one at which the tricycle does 5.71 km/h.
     dims
         Dimensions of a catalogued design: as identified, or as the paper prints them.
+    torque_velocity
+        Let joint moments change with joint speed, by Hill's relation; by default they do not, as in the paper.
     json
         Print one JSON object and nothing else.
     quiet
@@ -52,6 +55,7 @@ class RunOptions:
     moments: Path | None = None
     cadence: float | None = None
     dims: Literal["identified", "printed"] = "identified"
+    torque_velocity: Literal["hill"] | None = None
     json: Annotated[bool, Parameter(negative="")] = False
     quiet: Annotated[bool, Parameter(alias="-q", negative="")] = False
     verbose: Annotated[bool, Parameter(alias="-v", negative="")] = False
@@ -62,6 +66,8 @@ class RunOptions:
             raise InputError("--group and --moments exclude each other; a file of moments is a group of its own")
         loaded = load_design(design, self.dims)
         moments = load_moments(self.moments or self.group or "p1p2")
+        if self.torque_velocity:
+            moments = replace(moments, torque_velocity=load_torque_velocity(self.torque_velocity))
         return Loaded(loaded, moments, crank_speed(self.cadence, loaded))
 
 
