@@ -18,8 +18,10 @@ from fes_mj.design import LEGS, Design, Leg
 from fes_mj.segments import GRAVITY, Inertia, combine, inertias
 
 TARGET_TIMESTEP = 0.25e-3  # s; the loop gap grows with (speed * step)^2, the error of the torque reading with the step
-FEWEST_STEPS = 2400  # per turn: above 100 rpm the step shrinks with the turn
-SERVO_GAIN = 1e5  # N m s/rad; holds the cadence to 1e-5, stable only with the `discrete` integrator
+# The power that masses swing to and fro grows with the cube of the cadence, and the error of reading it with the step:
+# above FAST the number of steps in a turn grows with that cube from FEWEST_STEPS.
+FAST, FEWEST_STEPS = 10.5, 2400  # rad/s (100 rpm), per turn
+SERVO_GAIN = 1e6  # N m s/rad; holds the cadence to 1e-5 from 10 rpm on, stable only with the `discrete` integrator
 # MuJoCo's default solref (0.02 s) opens the loops by millimetres and bends the mean power by tens of percent; shorter
 # than 1e-5 s gains nothing, the softness left is that of solimp, which MuJoCo caps at 0.9999.
 LOOP_SOLREF = (1e-5, 1.0)
@@ -38,7 +40,7 @@ def steps_per_turn(cadence: float, timestep: float | None = None) -> int:
     """Whole number of time steps in a turn at `cadence` (rad/s), for a step near `timestep` (s) if given."""
     turn = 2 * math.pi / cadence
     if timestep is None:
-        return max(FEWEST_STEPS, round(turn / TARGET_TIMESTEP))
+        return max(round(turn / TARGET_TIMESTEP), round(FEWEST_STEPS * (cadence / FAST) ** 3))
     return max(1, round(turn / timestep))
 
 

@@ -79,7 +79,7 @@ def _write_facts(figure: Any, result: CrossCheck) -> None:
     facts = (
         ("mean power, dynamic", f"{run.power_mean:.3f} W a leg", DYNAMIC),
         ("mean power, quasi-static", f"{static.power_mean:.3f} W a leg", STATIC),
-        ("difference", f"{100 * result.relative_difference:+.4f} %", "black"),
+        ("difference", result.difference_text, "black"),
         ("largest loop gap", f"{1e6 * run.loop_gap_max:.1f} µm", "black"),
     )
     for row, (name, value, colour) in enumerate(facts):

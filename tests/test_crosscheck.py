@@ -65,6 +65,21 @@ def test_constraint_forces_are_the_reactions_of_the_massive_equilibrium(
         assert np.sqrt(np.mean((np.abs(force) - size)[~turning[::FORCE_EVERY]] ** 2)) < 0.01 * size.max(), loop
 
 
+@pytest.mark.parametrize("rpm", [10, 40, 120, 200])
+def test_the_default_step_suits_every_cadence(design: fes_mj.Design, rpm: float) -> None:
+    result = cross_check(design, fes_mj.load_moments("p1p2"), cadence=rpm * np.pi / 30)
+    assert result.agrees, [check for check in result.checks if not check.ok]
+
+
+@pytest.mark.parametrize("knee", [[0.0, 0.0, 0.0, 0.0], [1.0, 0.0, 1.0, 0.0]])
+def test_moments_that_deliver_next_to_nothing_agree_too(design: fes_mj.Design, knee: list[float]) -> None:
+    quarters = np.radians([0.0, 90.0, 180.0, 270.0])
+    moments = fes_mj.JointMoments("idle", quarters, np.array(knee), np.zeros(4))
+    result = cross_check(design, moments)
+    assert abs(result.simulation.power_mean - result.static.power_mean) <= 5e-3  # W
+    assert result.agrees
+
+
 def test_a_slack_servo_is_noticed(monkeypatch: pytest.MonkeyPatch, smooth_moments: fes_mj.JointMoments) -> None:
     monkeypatch.setattr("fes_mj.mjcf.SERVO_GAIN", 20.0)
     result = cross_check(fes_mj.load_design("d1"), smooth_moments)

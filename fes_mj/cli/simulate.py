@@ -144,9 +144,7 @@ def _print(result: CrossCheck, loaded: Loaded, verbose: bool) -> None:
         _print_details(result)
     print_notes(result.static)
     if result.agrees:
-        output.print(
-            f"[bold green]Dynamic and static agree[/]: mean power differs by {100 * result.relative_difference:+.4f} %."
-        )
+        output.print(f"[bold green]Dynamic and static agree[/]: mean power differs by {result.difference_text}.")
     else:
         failed = ", ".join(check.name for check in result.checks if not check.ok)
         output.print(f"[bold red]Dynamic and static do not agree[/]: {failed}; `fes_mj explain CHECK` says more.")

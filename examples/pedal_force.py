@@ -1,0 +1,22 @@
+"""The force of foot on pedal over the turn: quasi-static, with masses and weight, and as MuJoCo's constraint."""
+
+import numpy as np
+
+import fes_mj
+from fes_mj.inverse_dynamics import body_loads
+from fes_mj.kinematics import solve
+from fes_mj.simulation import FORCE_EVERY
+from fes_mj.statics import equilibrium, joint_moments
+
+design, moments = fes_mj.load_design("r1"), fes_mj.load_moments("p1p3")
+static = fes_mj.quasi_static(design, moments)
+run = fes_mj.simulate(design, moments)
+
+motion = solve(design, run.crank_angle[::FORCE_EVERY])
+_, reactions = equilibrium(motion, *joint_moments(motion, moments), body_loads(motion, run.cadence))
+for name, force in (
+    ("quasi-static", static.reactions["pedal"]),
+    ("with masses and weight", reactions["pedal"]),
+    ("MuJoCo", run.loop_force["pedal"]),
+):
+    print(f"{name:24s} mean {np.abs(force).mean():6.1f} N, largest {np.abs(force).max():6.1f} N")
