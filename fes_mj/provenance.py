@@ -12,14 +12,15 @@ from pathlib import Path
 from typing import Any
 
 
-def provenance(inputs: Iterable[Path] = ()) -> dict[str, Any]:
-    """Versions, date (UTC), command line without paths, and the SHA-256 of every input file by name."""
+def provenance(inputs: Iterable[Path] = (), packages: Iterable[str] = ()) -> dict[str, Any]:
+    """Versions (also of `packages`), date (UTC), command line without paths, SHA-256 of every input file by name."""
     return {
         "fes_mj": version("fes-mj"),
         "python": platform.python_version(),
         "mujoco": version("mujoco"),
         "numpy": version("numpy"),
         "scipy": version("scipy"),
+        **{package: version(package) for package in packages},
         "date": datetime.now(UTC).isoformat(timespec="seconds"),
         "command": " ".join([Path(sys.argv[0]).name, *sys.argv[1:]]),
         "inputs": {path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in inputs},

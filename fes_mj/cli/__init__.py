@@ -24,6 +24,7 @@ _COMMANDS = {
     "simulate": "Simulate a design in MuJoCo and compare its crank power with statics.",
     "static": "Mean crank power of a design by statics, without MuJoCo.",
     "export": "Write the MJCF model of a design, for other tools.",
+    "reproduce": "Compute the paper's tables and figures and write them beside our own.",
     "view": "Watch a design run in MuJoCo's interactive viewer.",
 }
 for _command, _help in _COMMANDS.items():

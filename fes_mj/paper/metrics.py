@@ -41,8 +41,7 @@ def size_table(runs: Runs) -> Table:
     }
     note = (
         "Length and height of the box around hip, knee and every joint of the linkage over the turn. Transmission "
-        "angle: between the two links of a dyad, folded to at most 90 deg; below some 40 deg a linkage is stiff to turn "
-        "and sensitive to play."
+        "angle: between the two links of a dyad, folded to at most 90 deg; a usual rule wants more than 40 deg."
     )
     return Table("7.1 Size and transmission", columns, rows, note)
 
@@ -57,7 +56,7 @@ def continuity_table(runs: Runs, posteriors: dict[str, Posterior]) -> Table:
     ends = [f"{joint} at {end}, N m" for joint in JOINTS for end in ("most bent", "most extended")]
     columns = dict.fromkeys(["design", "group", *ends, *(f"cost of {w:g} deg, W" for w in WIDTHS)], "")
     note = (
-        "Jump: moment in extension less moment in flexion at that angle. Cost: mean power with the jumps less mean power "
+        "Jump: moment in extension less moment in flexion at that angle. Cost: what mean power loses "
         "when within so many degrees of either end each joint's moment passes linearly into the mean of its two "
         "branches. The TRT's ends are the map's own: no jump, but near them the branches are smoothed as well."
     )
@@ -164,7 +163,7 @@ def jump_weights(result: QuasiStatic) -> list[NDArray[np.float64]]:
 
 
 def smoothing_weights(result: QuasiStatic, width: float) -> NDArray[np.float64]:
-    """Mean power lost by smoothing the jumps over `width` (rad) at each end of travel, as a functional of the curves."""
+    """Mean power lost by smoothing the jumps over `width` (rad) at each end, as a functional of the curves."""
     parts = []
     for joint, (angle, rate) in joint_angles(result.motion).items():
         from_end = np.minimum(angle - angle.min(), angle.max() - angle)
