@@ -4,7 +4,7 @@ VENV ?= .venv
 BIN = $(VENV)/bin
 EXTRAS = video,test,lint
 
-.PHONY: demo test test-long lint format benchmark catalogue clean
+.PHONY: demo test test-long lint format benchmark catalogue reproduce clean
 
 demo: $(VENV)/.ready
 	mkdir -p demo
@@ -34,6 +34,10 @@ benchmark: $(VENV)/.ready
 catalogue: $(VENV)/.ready
 	$(BIN)/python tools/make_catalogue.py
 	$(BIN)/python tools/reconstruct_moments.py
+
+# The paper's tables and figures beside ours: results/
+reproduce: $(VENV)/.ready
+	$(BIN)/fes_mj reproduce
 
 $(VENV)/.ready: pyproject.toml constraints.txt
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \

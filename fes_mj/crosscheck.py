@@ -3,42 +3,24 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from fes_mj.checks import Check, check
 from fes_mj.design import Design
 from fes_mj.inverse_dynamics import crank_moment
 from fes_mj.simulation import Simulation, simulate
 from fes_mj.statics import QuasiStatic, quasi_static
 from fes_mj.torque import JointMoments
 
-# Cycle-mean power: masses and weight return their energy, so only discretisation and loop softness are left.
-MEAN_POWER_LIMIT = 5e-4  # relative
-LOOP_GAP_LIMIT = 1e-5  # m
-CADENCE_RIPPLE_LIMIT = 1e-4  # relative
-POWER_RMS_LIMIT = 0.1  # W, instantaneous power of one leg
-ENERGY_LIMIT = 5e-4  # lost energy per joint work
 # A leg that delivers less than this is held to the limits of this much: what discretisation leaves behind does not
 # vanish with the mean, the masses swing a hundred watts to and fro all the same.
 LEAST_POWER = 10.0  # W
 # The near-massless variant keeps so much of all masses that inertia adds this power to the quasi-static curve. With
 # less, the loops, whose stiffness MuJoCo scales with the masses, give way to the jumps of the torque map.
 INERTIA_POWER_RMS = 0.03  # W
-
-
-class Check(NamedTuple):
-    """One comparison: a value that must stay at or below its limit, both in `unit` ("" is relative)."""
-
-    name: str
-    value: float
-    limit: float
-    unit: str = ""
-
-    @property
-    def ok(self) -> bool:
-        return self.value <= self.limit  # NaN is not
 
 
 @dataclass(frozen=True)
@@ -52,7 +34,7 @@ class CrossCheck:
 
     @property
     def agrees(self) -> bool:
-        return all(check.ok for check in self.checks)
+        return all(each.ok for each in self.checks)
 
     @property
     def relative_difference(self) -> float:
@@ -81,15 +63,15 @@ def cross_check(
     options: dict[str, Any] = {"cadence": cadence, "timestep": timestep, "turns": turns, "legs": legs}
     simulation = simulate(design, moments, **options)
     massless = simulate(design, moments, **options, mass_scale=near_massless(static), gravity=0.0)
-    power = max(abs(static.power_mean), LEAST_POWER)
+    power = power_scale(static)
     duration = len(simulation.crank_angle) * simulation.timestep
     checks = (
-        Check("mean_power", abs(simulation.power_mean - static.power_mean) / power, MEAN_POWER_LIMIT),
-        Check("loop_gap", simulation.loop_gap_max, LOOP_GAP_LIMIT, "m"),
-        Check("cadence_ripple", simulation.cadence_ripple, CADENCE_RIPPLE_LIMIT),
-        Check("inverse_dynamics", _rms_per_leg(simulation, reference_power(simulation)), POWER_RMS_LIMIT, "W"),
-        Check("massless_statics", _rms_per_leg(massless, reference_power(massless, 0.0)), POWER_RMS_LIMIT, "W"),
-        Check("energy_balance", abs(simulation.energy.lost) / (power * duration * legs), ENERGY_LIMIT),
+        check("mean_power", abs(simulation.power_mean - static.power_mean) / power),
+        check("loop_gap", simulation.loop_gap_max),
+        check("cadence_ripple", simulation.cadence_ripple),
+        check("inverse_dynamics", _rms_per_leg(simulation, reference_power(simulation))),
+        check("massless_statics", _rms_per_leg(massless, reference_power(massless, 0.0))),
+        check("energy_balance", abs(simulation.energy.lost) / (power * duration * legs)),
     )
     return CrossCheck(simulation, massless, static, checks)
 
@@ -99,6 +81,11 @@ def near_massless(static: QuasiStatic) -> float:
     massive = crank_moment(static.design, static.moments, static.cadence, static.crank_angle, gravity=0.0)
     inertia_power = static.cadence * np.sqrt(np.mean((massive - static.crank_moment) ** 2))
     return float(min(1.0, INERTIA_POWER_RMS / inertia_power))
+
+
+def power_scale(static: QuasiStatic) -> float:
+    """What the relative limits refer to: the mean power of one leg, but no less than LEAST_POWER, W."""
+    return max(abs(static.power_mean), LEAST_POWER)
 
 
 def relative_difference(value: float, reference: float) -> float:

@@ -21,6 +21,7 @@ _DATA = Path(__file__).parent / "data" / "designs"
 
 # No length of a pedalling linkage or leg comes near this; a larger one is in centimetres.
 LONGEST = 2.0  # m
+SHORTEST = 1e-3  # m; a shorter link has no inertia that a simulation could use
 _SIX_BAR, _ALL = ("crt", "cdt"), ("trt", "crt", "cdt")
 
 
@@ -37,8 +38,8 @@ class _Key:
     degrees: bool = False
 
 
-def _positive(value: float) -> bool:
-    return 0 < value <= LONGEST
+def _length(value: float) -> bool:
+    return SHORTEST <= value <= LONGEST
 
 
 def _not_negative(value: float) -> bool:
@@ -49,25 +50,25 @@ def _any_sign(value: float) -> bool:
     return abs(value) <= LONGEST
 
 
-_LENGTH = f"a length in metres above 0, up to {LONGEST:g}"
+_LENGTH = f"a length in metres from {SHORTEST:g} to {LONGEST:g}"
 _VECTOR = f"[x, y] in metres, each between -{LONGEST:g} and {LONGEST:g}"
 _ANGLE = "an angle in degrees between -360 and 360"
 _LINKAGE_KEYS = {
     "R1": _Key("ground", _VECTOR, _any_sign, _ALL, vector=True),
-    "R2": _Key("crank", _LENGTH, _positive, _ALL),
+    "R2": _Key("crank", _LENGTH, _length, _ALL),
     "R6": _Key("foot", f"a length in metres between -{LONGEST:g} and {LONGEST:g}", _any_sign, _ALL),
     "R7": _Key("pivot_to_crank", _VECTOR, _any_sign, _SIX_BAR, vector=True),
     "R8": _Key("pedal_arm", f"a length in metres from 0 to {LONGEST:g}", _not_negative, _SIX_BAR),
-    "R9": _Key("coupler", _LENGTH, _positive, _SIX_BAR),
-    "R10": _Key("rocker", _LENGTH, _positive, _SIX_BAR),
+    "R9": _Key("coupler", _LENGTH, _length, _SIX_BAR),
+    "R10": _Key("rocker", _LENGTH, _length, _SIX_BAR),
     "gamma": _Key("coupler_angle", _ANGLE, lambda v: abs(v) <= 360, (), ("cdt",), degrees=True),
     "gear_ratio": _Key("gear_ratio", "a ratio above 0, up to 20", lambda v: 0 < v <= 20, _ALL),
     "seat_angle": _Key("seat_angle", _ANGLE, lambda v: abs(v) <= 360, _ALL, degrees=True),
 }
 _RIDER_KEYS = {
-    "thigh": _Key("thigh", _LENGTH, _positive, (), _ALL),
-    "shank": _Key("shank", _LENGTH, _positive, (), _ALL),
-    "mass": _Key("mass", "a mass in kg above 0, up to 500", lambda v: 0 < v <= 500, (), _ALL),
+    "thigh": _Key("thigh", _LENGTH, _length, (), _ALL),
+    "shank": _Key("shank", _LENGTH, _length, (), _ALL),
+    "mass": _Key("mass", "a mass in kg from 1 to 500", lambda v: 1 <= v <= 500, (), _ALL),
 }
 
 

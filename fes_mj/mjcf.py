@@ -15,6 +15,7 @@ import numpy as np
 
 from fes_mj import appearance, kinematics
 from fes_mj.design import LEGS, Design, Leg
+from fes_mj.errors import InputError
 from fes_mj.segments import GRAVITY, Inertia, combine, inertias
 
 TARGET_TIMESTEP = 0.25e-3  # s; the loop gap grows with (speed * step)^2, the error of the torque reading with the step
@@ -52,12 +53,15 @@ def build_mjcf(
     legs: int = 1,
     mass_scale: float = 1.0,
     gravity: float = GRAVITY,
+    loop_solref: tuple[float, float] | None = None,
     variant: str = "sites",
 ) -> mujoco.MjSpec:
     """The model of a design at a cadence (rad/s, by default Eq. 16), assembled, with a keyframe at crank angle 0.
 
     timestep: s; rounded so that a turn is a whole number of steps. mass_scale: factor on every mass and inertia.
-    variant: loops anchored at "sites" or on "bodies". Raises AssemblyError if the linkage does not close.
+    loop_solref: MuJoCo's time constant (s) and damping ratio of the loops, by default LOOP_SOLREF.
+    variant: loops anchored at "sites" or on "bodies". Raises AssemblyError if the linkage does not close,
+    InputError if MuJoCo refuses it.
     """
     kinematics.require_assembly(design)
     cadence = design.linkage.cadence if cadence is None else cadence
@@ -67,13 +71,13 @@ def build_mjcf(
     # as authored and at full precision: the default output has six digits, half a micrometre of loop error
     spec.compiler.savecompiled = spec.compiler.savecanonical = False
     spec.compiler.degree = False
-    _set_options(spec, 2 * math.pi / cadence / steps_per_turn(cadence, timestep), gravity)
-    _set_defaults(spec)
+    set_options(spec, 2 * math.pi / cadence / steps_per_turn(cadence, timestep), gravity)
+    _set_defaults(spec, loop_solref or LOOP_SOLREF)
     # one fixed root: some readers drop all bodies but the first
     root = spec.worldbody.add_body(name="tricycle", childclass="tricycle")
     masses = {body: _scaled(part, mass_scale) for body, part in inertias(design).items()}
     masses["crank"] = combine(*(_turned(masses["crank"], -leg.lag) for leg in LEGS[legs]))
-    crank = _add_body(root, "crank", _position(design.linkage.crank_centre), masses["crank"])
+    crank = add_body(root, "crank", _position(design.linkage.crank_centre), masses["crank"])
     crank.add_site(name="crank_torque")
     state = {"crank": (0.0, cadence)}
     for leg in LEGS[legs]:
@@ -86,16 +90,28 @@ def build_mjcf(
     return spec
 
 
+def joint_motion(motion: kinematics.Motion) -> dict[str, tuple[Any, Any, Any]]:
+    """Angle (rad) of every joint of a leg but the crank, and its first two derivatives by the crank angle."""
+    turning = motion.turning
+    joints = {
+        "hip": (motion.hip_angle, *turning["thigh"]),
+        "knee": (motion.knee_angle, *_difference(turning["thigh"], turning["shank"])),
+    }
+    if "rocker" in turning:
+        rocker, coupler = motion.direction("rocker"), motion.direction("coupler")
+        joints["rocker"] = (np.angle(rocker), *turning["rocker"])
+        joints["coupler"] = (np.angle(coupler / rocker), *_difference(turning["coupler"], turning["rocker"]))
+    return joints
+
+
+def _difference(one: tuple[Any, Any], other: tuple[Any, Any]) -> tuple[Any, Any]:
+    return (one[0] - other[0], one[1] - other[1])
+
+
 def _start_state(design: Design, leg: Leg, cadence: float) -> dict[str, tuple[float, float]]:
     """Angle (rad) and speed (rad/s) of every joint of a leg but the crank, at crank angle 0."""
-    motion = kinematics.solve(design, np.array([-leg.lag]))
-    joints = {"hip": (motion.hip_angle, motion.hip_rate), "knee": (motion.knee_angle, motion.knee_rate)}
-    if "rocker" in motion.turning:
-        rocker, coupler = motion.direction("rocker"), motion.direction("coupler")
-        turning = motion.turning["rocker"][0]
-        joints["rocker"] = (np.angle(rocker), turning)
-        joints["coupler"] = (np.angle(coupler / rocker), motion.turning["coupler"][0] - turning)
-    return {joint: (float(angle[0]), cadence * float(rate[0])) for joint, (angle, rate) in joints.items()}
+    joints = joint_motion(kinematics.solve(design, np.array([-leg.lag])))
+    return {joint: (float(angle[0]), cadence * float(rate[0])) for joint, (angle, rate, _) in joints.items()}
 
 
 def _scaled(inertia: Inertia, scale: float) -> Inertia:
@@ -106,7 +122,8 @@ def _turned(inertia: Inertia, angle: float) -> Inertia:
     return inertia._replace(centre=inertia.centre * complex(math.cos(angle), math.sin(angle)))
 
 
-def _set_options(spec: mujoco.MjSpec, timestep: float, gravity: float) -> None:
+def set_options(spec: mujoco.MjSpec, timestep: float, gravity: float) -> None:
+    """Solver options for closed planar loops: time step in s, gravity in m/s^2 along -z."""
     option = spec.option
     option.timestep = timestep
     option.gravity = (0.0, 0.0, -gravity)
@@ -116,11 +133,11 @@ def _set_options(spec: mujoco.MjSpec, timestep: float, gravity: float) -> None:
     option.disableflags = int(mujoco.mjtDisableBit.mjDSBL_CONTACT | mujoco.mjtDisableBit.mjDSBL_ISLAND)
 
 
-def _set_defaults(spec: mujoco.MjSpec) -> None:
+def _set_defaults(spec: mujoco.MjSpec, loop_solref: tuple[float, float]) -> None:
     """The default class `tricycle`: what all joints, loops, sites and geoms of the model share."""
     shared = spec.add_default("tricycle", spec.default)
     shared.joint.axis = AXIS
-    shared.equality.solref, shared.equality.solimp = LOOP_SOLREF, LOOP_SOLIMP
+    shared.equality.solref, shared.equality.solimp = loop_solref, LOOP_SOLIMP
     shared.site.group, shared.site.size = 4, [0.005] * 3  # hidden unless asked for
     # geoms are pictures: no mass, no contact
     shared.geom.density, shared.geom.contype, shared.geom.conaffinity, shared.geom.group = 0, 0, 0, 2
@@ -131,7 +148,7 @@ def _position(point: complex, lateral: float = 0.0) -> tuple[float, float, float
     return (float(np.real(point)) + NO_MINUS, lateral, float(np.imag(point)) + NO_MINUS)
 
 
-def _add_body(
+def add_body(
     parent: Any,
     name: str,
     pos: tuple[float, float, float],
@@ -171,7 +188,7 @@ def _add_leg(
     angle = {joint: values[0] for joint, values in start.items()}
 
     def add(parent: Any, body: str, pos: tuple[float, float, float], joint: str, **pose: Any) -> Any:
-        return _add_body(parent, prefix + body, pos, masses[body], joint=prefix + joint, angle=angle[joint], **pose)
+        return add_body(parent, prefix + body, pos, masses[body], joint=prefix + joint, angle=angle[joint], **pose)
 
     thigh = add(root, "thigh", _position(0j, leg.lateral), "hip", turned=linkage.seat_angle)
     # extension turns the shank clockwise; at knee angle 0 it would lie folded along the thigh
@@ -237,7 +254,10 @@ def _add_drives(spec: mujoco.MjSpec, legs: tuple[Leg, ...]) -> None:
 
 def _add_keyframe(spec: mujoco.MjSpec, state: dict[str, tuple[float, float]]) -> None:
     """Exact position and velocity at crank angle 0, the servo at its cadence and the joint motors idle."""
-    model = spec.compile()
+    try:
+        model = spec.compile()
+    except ValueError as error:
+        raise InputError(f"{spec.modelname}: MuJoCo cannot build the model: {' '.join(str(error).split())}") from None
     qpos, qvel, ctrl = np.zeros(model.nq), np.zeros(model.nv), np.zeros(model.nu)
     for joint, (angle, speed) in state.items():
         address = model.joint(joint).qposadr[0]

@@ -22,6 +22,17 @@ def provenance(inputs: Iterable[Path] = (), packages: Iterable[str] = ()) -> dic
         "scipy": version("scipy"),
         **{package: version(package) for package in packages},
         "date": datetime.now(UTC).isoformat(timespec="seconds"),
-        "command": " ".join([Path(sys.argv[0]).name, *sys.argv[1:]]),
-        "inputs": {path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in inputs},
+        "command": " ".join([_program(Path(sys.argv[0])), *sys.argv[1:]]),
+        "inputs": {_name(path): hashlib.sha256(path.read_bytes()).hexdigest() for path in inputs},
     }
+
+
+def _program(path: Path) -> str:
+    """The script's name; of `python -m package` the package's."""
+    return path.parent.name if path.name == "__main__.py" else path.name
+
+
+def _name(path: Path) -> str:
+    """The file's place among the shipped data, or its bare name: two designs differ only by their folder."""
+    data = Path(__file__).parent / "data"
+    return str(path.relative_to(data)) if path.is_relative_to(data) else path.name

@@ -94,19 +94,29 @@ def simulate(
     legs: int = 1,
     mass_scale: float = 1.0,
     gravity: float = GRAVITY,
+    loop_solref: tuple[float, float] | None = None,
 ) -> Simulation:
     """Run whole turns of the model of build_mjcf (same arguments) under the torque map of `moments`.
 
     Raises AssemblyError if the linkage does not close, UnstableError if the integration breaks down.
     """
     cadence = design.linkage.cadence if cadence is None else cadence
-    spec = build_mjcf(design, cadence=cadence, timestep=timestep, legs=legs, mass_scale=mass_scale, gravity=gravity)
+    spec = build_mjcf(
+        design,
+        cadence=cadence,
+        timestep=timestep,
+        legs=legs,
+        mass_scale=mass_scale,
+        gravity=gravity,
+        loop_solref=loop_solref,
+    )
     model, steps = spec.compile(), turns * steps_per_turn(cadence, timestep)
     drives, torque_map = joint_drives(LEGS[legs]), TorqueMap(moments)
     run = run_steps(model, {name: torque_map.feedback(joint) for name, joint in drives.items()}, steps)
 
     column = {model.sensor(i).name: int(model.sensor(i).adr[0]) for i in range(model.nsensor)}
     rows, loops = run.sensors[:steps], [model.equality(i).name for i in range(model.neq)]
+    forces, closed = run.fields["efc_force"], [loop for loop in loops if model.equality(loop).active0]
     angle = {model.joint(i).name: rows[:, column[f"{model.joint(i).name}_angle"]] for i in range(model.njnt)}
     speed = {name: run.sensors[:, column[f"{name}_speed"]] for name in angle}
     moment = {name: torque_map.moment(joint, angle[name], speed[name][:steps]) for name, joint in drives.items()}
@@ -133,7 +143,7 @@ def simulate(
         joint_speed={name: values[:steps] for name, values in speed.items()},
         joint_moment=moment,
         loop_gap={loop: np.linalg.norm(rows[:, (at := column[f"{loop}_gap"]) : at + 3], axis=1) for loop in loops},
-        loop_force={loop: run.forces[:, 3 * i] + 1j * run.forces[:, 3 * i + 2] for i, loop in enumerate(loops)},
+        loop_force={loop: forces[:, 3 * i] + 1j * forces[:, 3 * i + 2] for i, loop in enumerate(closed)},
         energy=Energy(
             joint_work=sum(work(moment[name], speed[name]) for name in drives),
             crank_work=work(crank_moment, speed["crank"]),
@@ -149,16 +159,25 @@ def joint_drives(legs: tuple[Leg, ...]) -> dict[str, str]:
 
 
 class Run(NamedTuple):
-    """Records of a run: sensor rows of all steps and one more, constraint forces of some steps, energies (J)."""
+    """Records of a run: sensor rows of all steps and one more, energies (J), recorded fields (rows, size) by name."""
 
     sensors: NDArray[np.float64]
-    forces: NDArray[np.float64]
     start_energy: tuple[float, float]  # potential, kinetic
     end_energy: tuple[float, float]
+    fields: dict[str, NDArray[np.float64]]
 
 
-def run_steps(model: mujoco.MjModel, feedback: dict[str, Callable[[float, float], float]], steps: int) -> Run:
-    """Step the model from its keyframe; `feedback` maps a joint's angle and speed to the motor of the same name."""
+def run_steps(
+    model: mujoco.MjModel,
+    feedback: dict[str, Callable[[float, float], float]],
+    steps: int,
+    record: tuple[str, ...] = ("efc_force",),
+    every: int = FORCE_EVERY,
+) -> Run:
+    """Step the model from its keyframe; `feedback` maps a joint's angle and speed to the motor of the same name.
+
+    record: fields of MjData to read, each of constant size, after the first and then after each `every` steps.
+    """
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, 0)
     # plain floats through memory views and rows as bytes cost half of numpy scalars and row assignment
@@ -171,14 +190,16 @@ def run_steps(model: mujoco.MjModel, feedback: dict[str, Callable[[float, float]
 
     def advance(count: int) -> Run:
         start, step, read = _energy(model, data), mujoco.mj_step, data.sensordata.tobytes
-        sensors, forces = [], []
+        sensors: list[bytes] = []
+        fields: dict[str, list[bytes]] = {name: [] for name in record}
         for number in range(count):
             for actuator, position, speed, moment in drives:
                 ctrl[actuator] = moment(qpos[position], qvel[speed])
             step(model, data)
             sensors.append(read())
-            if not number % FORCE_EVERY:
-                forces.append(data.efc_force.tobytes())
+            if not number % every:
+                for name, rows in fields.items():
+                    rows.append(getattr(data, name).tobytes())
         if any(warning.number for warning in data.warning):
             raise UnstableError(
                 f"{model.names[: model.names.index(0)].decode()}: the simulation became unstable "
@@ -187,7 +208,7 @@ def run_steps(model: mujoco.MjModel, feedback: dict[str, Callable[[float, float]
         end = _energy(model, data)
         mujoco.mj_forward(model, data)
         sensors.append(read())
-        return Run(_matrix(sensors), _matrix(forces), start, end)
+        return Run(_matrix(sensors), start, end, {name: _matrix(rows) for name, rows in fields.items()})
 
     previous = mujoco.get_mju_user_warning()
     mujoco.set_mju_user_warning(lambda _: None)  # MuJoCo would write MUJOCO_LOG.TXT into the user's folder

@@ -122,6 +122,16 @@ def virtual_work(motion: Motion, knee: Any, hip: Any, loads: Mapping[str, Load] 
     return moment
 
 
+def joint_couples(knee: Any, hip: Any) -> dict[str, Any]:
+    """Couple of the joint moments on each body, N m: extension turns the thigh forwards, the shank back against it."""
+    return {"thigh": hip + knee, "shank": -knee}
+
+
+def moment_arm(motion: Motion, body: str, point: str) -> Any:
+    """From a body's origin to one of its points, m, complex."""
+    return motion.points[point].value - motion.points[BODIES[body][0]].value
+
+
 def equilibrium(
     motion: Motion, knee: Any, hip: Any, loads: Mapping[str, Load] | None = None
 ) -> tuple[NDArray[np.float64], dict[str, NDArray[np.complex128]]]:
@@ -134,21 +144,19 @@ def equilibrium(
     bodies, joints = architecture.bodies, architecture.joints
     size, count = 3 * len(bodies), np.size(motion.crank_angle)
     matrix, right = np.zeros((count, size, size)), np.zeros((count, size))
-    # couples that act on the bodies: extension turns the thigh forwards and the shank backwards against it
-    couples = {"thigh": hip + knee, "shank": -knee}
+    couples = joint_couples(knee, hip)
     for row, body in enumerate(bodies):
-        origin = motion.points[BODIES[body][0]].value
         for column, (point, pair) in enumerate(joints.items()):
             if body in pair:
                 sign = 1.0 if pair[1] == body else -1.0
-                arm = motion.points[point].value - origin
+                arm = moment_arm(motion, body, point)
                 matrix[:, 3 * row, 2 * column] = sign
                 matrix[:, 3 * row + 1, 2 * column + 1] = sign
                 matrix[:, 3 * row + 2, 2 * column] = -sign * arm.imag
                 matrix[:, 3 * row + 2, 2 * column + 1] = sign * arm.real
         right[:, 3 * row + 2] = -np.asarray(couples.get(body, 0.0))
         if loads:
-            load = loads[body]
+            load, origin = loads[body], motion.points[BODIES[body][0]].value
             right[:, 3 * row] -= load.force.real
             right[:, 3 * row + 1] -= load.force.imag
             right[:, 3 * row + 2] -= load.couple + (np.conj(load.point.value - origin) * load.force).imag

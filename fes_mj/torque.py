@@ -35,6 +35,7 @@ TOP_DEAD_CENTRE = float(np.angle(-REFERENCE.linkage.crank_centre))
 GROUPS = ("p1p2", "p1p3")
 JOINTS = ("knee", "hip")
 COLUMNS = ("crank_angle_deg", "knee_Nm", "hip_Nm")
+LARGEST_MOMENT = 1e4  # N m, ten times what a strong leg can do; beyond it the unit is another one
 TABLE_SIZE = 3600  # moments are interpolated linearly on a uniform grid of 0.1 deg
 _GRID = np.arange(TABLE_SIZE + 2) * (2 * np.pi / TABLE_SIZE)  # from top dead centre; two more for rounding at the end
 
@@ -261,6 +262,11 @@ def _read_row(path: Path, number: int, row: list[str]) -> tuple[float, ...]:
         if not math.isfinite(value):
             raise InputError(f"{path}: line {number}: {column} is {cell.strip()!r}; it must be a finite number")
         values.append(value)
+        if column != COLUMNS[0] and abs(value) > LARGEST_MOMENT:
+            raise InputError(
+                f"{path}: line {number}: {column} is {cell.strip()}; "
+                f"it must be between -{LARGEST_MOMENT:g} and {LARGEST_MOMENT:g} N m"
+            )
     if not 0 <= values[0] < 360:
         raise InputError(
             f"{path}: line {number}: crank_angle_deg is {values[0]:g}; it must be at least 0 and below 360"

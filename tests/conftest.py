@@ -2,10 +2,15 @@
 
 import numpy as np
 import pytest
+from hypothesis import settings
 
 import fes_mj
 from fes_mj.design_file import CATALOGUE
 from fes_mj.torque import GROUPS
+
+# The same examples in every run: a failure can be repeated. `--hypothesis-profile default` looks further.
+settings.register_profile("fes_mj", derandomize=True, deadline=None, max_examples=50)
+settings.load_profile("fes_mj")
 
 
 @pytest.fixture(params=CATALOGUE)

@@ -128,7 +128,7 @@ def test_joint_angles_without_data_are_mentioned(capsys: pytest.CaptureFixture[s
         (["static", "d1", "--group", "p9"], 'Invalid value "p9" for --group'),
         (["static", "d1", "--group", "p1p2", "--moments", "x.csv"], "--group and --moments exclude each other"),
         (["static", "d1", "--moments", "none.csv"], "none.csv: cannot read the joint moments"),
-        (["static", "d1", "--cadence", "0"], "--cadence is 0; it must be above 0 and at most 200 rpm"),
+        (["static", "d1", "--cadence", "0"], "--cadence is 0; it must be from 1 to 200 rpm"),
         (["static", "d1", "--cadence", "nan"], "--cadence is nan"),
         (["static", "d1", "--cadence", "fast"], 'Invalid value for --cadence: unable to convert "fast"'),
         (["simulate", "d1", "--timestep", "1"], "--timestep is 1; it must be above 0 and at most 0.02 s"),

@@ -50,9 +50,9 @@ def test_printed_and_identified_differ_by_less_than_the_rounding() -> None:
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"R2": "15.0"}, r"linkage.R2 is 15.0; .*metres above 0, up to 2 \(centimetres\? lengths are in metres\)"),
+        ({"R2": "15.0"}, r"linkage.R2 is 15.0; .*metres from 0.001 to 2 \(centimetres\? lengths are in metres\)"),
         ({"R1": "[-73.6, -30.4]"}, r"linkage.R1 is \[-73.6, -30.4\].*centimetres"),
-        ({"R2": "-0.15"}, "linkage.R2 is -0.15; it must be a length in metres above 0"),
+        ({"R2": "-0.15"}, "linkage.R2 is -0.15; it must be a length in metres from 0.001"),
         ({"R2": "0.0"}, "linkage.R2 is 0.0"),
         ({"R2": "nan"}, "linkage.R2 is nan"),
         ({"R6": "inf"}, "linkage.R6 is inf"),

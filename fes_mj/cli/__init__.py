@@ -14,6 +14,9 @@ from fes_mj.headless import defer_gl
 
 AGREES, DISAGREES, BAD_INPUT, MISSING_PART, INTERRUPTED = 0, 1, 2, 3, 130
 
+INTERRUPTION = "interrupted; nothing was left half-written"
+LONGEST_MESSAGE = 1000  # characters
+
 app = App(
     name="fes_mj",
     help="Does a pedalling linkage for FES cycling deliver its power when legs have mass and loops must close?",
@@ -24,6 +27,8 @@ _COMMANDS = {
     "simulate": "Simulate a design in MuJoCo and compare its crank power with statics.",
     "static": "Mean crank power of a design by statics, without MuJoCo.",
     "export": "Write the MJCF model of a design, for other tools.",
+    "validate": "Run every check of the harness on designs, one verdict each.",
+    "explain": "What a check guards against and what usually breaks it.",
     "reproduce": "Compute the paper's tables and figures and write them beside our own.",
     "view": "Watch a design run in MuJoCo's interactive viewer.",
 }
@@ -48,11 +53,18 @@ def run(arguments: Sequence[str] | None = None) -> int:
     except OSError as error:
         return _fail(f"{error.filename or 'output'}: {error.strerror}", BAD_INPUT)
     except KeyboardInterrupt:
-        return _fail("interrupted; nothing was left half-written", INTERRUPTED)
+        return _fail(INTERRUPTION, INTERRUPTED)
+    except ImportError as error:
+        if isinstance(error.__cause__, KeyboardInterrupt):  # while a compiled module was being loaded
+            return _fail(INTERRUPTION, INTERRUPTED)
+        raise
 
 
 def _fail(message: object, code: int) -> int:
-    errors.print(f"fes_mj: {message}", markup=False, highlight=False, soft_wrap=True)
+    text = str(message)
+    if len(text) > LONGEST_MESSAGE:  # quoted input can be as long as the file
+        text = f"{text[: LONGEST_MESSAGE // 2]} ... {text[-LONGEST_MESSAGE // 2 :]}"
+    errors.print(f"fes_mj: {text}", markup=False, highlight=False, soft_wrap=True)
     return code
 
 

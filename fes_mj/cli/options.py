@@ -16,6 +16,7 @@ from fes_mj.torque import JointMoments, load_moments
 from fes_mj.torque_velocity import load_torque_velocity
 
 HIGHEST_CADENCE = 200.0  # rpm; up to here the default step keeps every check of the catalogue inside its limit
+LOWEST_CADENCE = 1.0  # rpm; a turn of a minute
 
 
 class Loaded(NamedTuple):
@@ -73,8 +74,15 @@ class RunOptions:
 
 def crank_speed(cadence: float | None, design: Design) -> float:
     """Crank speed in rad/s of a --cadence in rpm, by default the design's own."""
-    if cadence is None:
-        return design.linkage.cadence
-    if not 0 < cadence <= HIGHEST_CADENCE:
-        raise InputError(f"--cadence is {cadence:g}; it must be above 0 and at most {HIGHEST_CADENCE:g} rpm")
-    return cadence * math.pi / 30
+    allowed = f"from {LOWEST_CADENCE:g} to {HIGHEST_CADENCE:g} rpm"
+    if cadence is not None:
+        if not LOWEST_CADENCE <= cadence <= HIGHEST_CADENCE:
+            raise InputError(f"--cadence is {cadence:g}; it must be {allowed}")
+        return cadence * math.pi / 30
+    own = design.linkage.cadence * 30 / math.pi
+    if not LOWEST_CADENCE <= own <= HIGHEST_CADENCE:
+        raise InputError(
+            f"{design.name}: linkage.gear_ratio is {design.linkage.gear_ratio:g}, which makes {own:.3g} rpm at the "
+            f"tricycle's speed; it must be {allowed}: change the ratio or give --cadence"
+        )
+    return design.linkage.cadence

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-import json
-import math
 import sys
-from collections.abc import Iterable, Sequence
-from typing import Any
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Any, TypeVar
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
+from rich.progress import Progress
 from rich.table import Table
+
+from fes_mj.files import json_text as json_text
+
+Item = TypeVar("Item")
 
 output = Console(highlight=False)
 errors = Console(stderr=True, highlight=False)
@@ -19,23 +22,6 @@ errors = Console(stderr=True, highlight=False)
 def print_json(content: dict[str, Any]) -> None:
     """Print one JSON object; numbers that JSON lacks (NaN, infinity) become null."""
     sys.stdout.write(json_text(content))
-
-
-def json_text(content: dict[str, Any]) -> str:
-    """The object as indented JSON text."""
-    return json.dumps(_plain(content), indent=2, allow_nan=False) + "\n"
-
-
-def _plain(value: Any) -> Any:
-    if hasattr(value, "tolist"):
-        value = value.tolist()
-    if isinstance(value, dict):
-        return {key: _plain(item) for key, item in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [_plain(item) for item in value]
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
-    return value
 
 
 def print_table(title: str, columns: Sequence[str], rows: Iterable[Sequence[str]]) -> None:
@@ -47,3 +33,19 @@ def print_table(title: str, columns: Sequence[str], rows: Iterable[Sequence[str]
     for row in rows:
         table.add_row(*row)
     output.print(table)
+
+
+def number(value: float, unit: str = "") -> str:
+    """A value with two digits and its unit."""
+    return f"{value:.2g} {unit}".rstrip()
+
+
+def verdict(ok: bool) -> str:
+    """The verdict on a check, in colour."""
+    return "[green]ok[/]" if ok else "[bold red]FAILED[/]"
+
+
+def track(items: Sequence[Item], title: str, quiet: bool = False) -> Iterator[Item]:
+    """The items one by one, with a progress bar on standard error that is gone when they are through."""
+    with Progress(console=errors, transient=True, disable=quiet) as progress:
+        yield from progress.track(items, description=title)

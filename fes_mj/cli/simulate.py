@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from fes_mj.cli.options import Loaded, RunOptions
-from fes_mj.cli.output import json_text, output, print_json, print_table
+from fes_mj.cli.output import json_text, number, output, print_json, print_table, verdict
 from fes_mj.cli.static import heading, print_notes, rows, summary, with_error
 from fes_mj.errors import InputError
 from fes_mj.files import require_folder, require_writable, write_text
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 _DEFAULTS = RunOptions()
 LONGEST_TIMESTEP = 0.02  # s
 MOST_TURNS = 1000
+MOST_STEPS = 4_000_000  # of one run; its record takes a gigabyte
 
 
 def simulate(
@@ -52,6 +53,7 @@ def simulate(
     """
     loaded = options.load(design)
     _check(render, out, timestep, turns)
+    _check_steps(loaded.cadence, timestep, turns)
     from fes_mj.crosscheck import cross_check
 
     result = cross_check(
@@ -82,6 +84,18 @@ def _check(render: Path | None, out: Path | None, timestep: float | None, turns:
         raise InputError(f"--timestep is {timestep:g}; it must be above 0 and at most {LONGEST_TIMESTEP:g} s")
     if not 1 <= turns <= MOST_TURNS:
         raise InputError(f"--turns is {turns}; it must be from 1 to {MOST_TURNS}")
+
+
+def _check_steps(cadence: float, timestep: float | None, turns: int) -> None:
+    """Refuse runs whose record would not fit into memory."""
+    from fes_mj.mjcf import steps_per_turn
+
+    steps = turns * steps_per_turn(cadence, timestep)
+    if steps > MOST_STEPS:
+        raise InputError(
+            f"--turns {turns} would take {steps:.3g} time steps; at most {MOST_STEPS:.0e} fit into memory: "
+            "give fewer turns or a longer --timestep"
+        )
 
 
 def _summary(result: CrossCheck) -> dict[str, Any]:
@@ -135,9 +149,8 @@ def _print(result: CrossCheck, loaded: Loaded, verbose: bool) -> None:
         "Checks",
         ("check", "value", "limit", "verdict"),
         [
-            (check.name.replace("_", " "), _number(check.value, check.unit), _number(check.limit, check.unit), verdict)
+            (check.name, number(check.value, check.unit), number(check.limit, check.unit), verdict(check.ok))
             for check in result.checks
-            for verdict in ("[green]ok[/]" if check.ok else "[bold red]FAILED[/]",)
         ],
     )
     if verbose:
@@ -163,10 +176,6 @@ def _print_details(result: CrossCheck) -> None:
     forces = {loop.replace("_", " "): np.abs(force) for loop, force in run.loop_force.items()}
     cells = [(name, f"{force.mean():.1f}", f"{force.max():.1f}") for name, force in forces.items()]
     print_table("Constraint forces", ("loop", "mean N", "largest N"), cells)
-
-
-def _number(value: float, unit: str) -> str:
-    return f"{value:.2g} {unit}".rstrip()
 
 
 def _write(result: CrossCheck, out: Path) -> None:

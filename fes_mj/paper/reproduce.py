@@ -7,7 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fes_mj.files import replacing, write_text
+from fes_mj.files import json_text, replacing, write_text
 from fes_mj.paper import gains, metrics, readings, recovery, tables
 from fes_mj.paper.evidence import load_evidence
 from fes_mj.paper.printed import DATA
@@ -63,7 +63,8 @@ def reproduce(folder: Path, done: Done) -> list[Path]:
 
 def inputs() -> list[Path]:
     """The data files that the results depend on."""
-    return sorted(path for path in DATA.rglob("*") if path.suffix in (".toml", ".csv", ".npz"))
+    shared = [DATA / f"{name}.toml" for name in ("paper", "evidence", "torque_velocity")]
+    return [*shared, *sorted((DATA / "designs").glob("*/*.toml")), *sorted((DATA / "moments").iterdir())]
 
 
 def _identification(done: Done) -> list[Table]:
@@ -125,7 +126,5 @@ def _write_figure(stem: Path, draw: Callable[[], Figure]) -> list[Path]:
 
 
 def _write_record(path: Path, record: dict[str, Any]) -> Path:
-    from fes_mj.cli.output import json_text
-
     write_text(path, json_text(record))
     return path

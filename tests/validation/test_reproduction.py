@@ -223,11 +223,11 @@ def test_committed_powers_are_todays(posteriors: dict[str, Posterior]) -> None:
 
 
 def test_committed_inputs_are_todays() -> None:
-    import hashlib
-
     from fes_mj.paper.reproduce import inputs
+    from fes_mj.provenance import provenance
 
-    now = {path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in inputs()}
+    now = provenance(inputs())["inputs"]
+    assert len(now) == len(inputs()) == 17
     assert RECORD["provenance"]["inputs"].keys() == now.keys()
     changed = [name for name, value in now.items() if RECORD["provenance"]["inputs"][name] != value]
     assert not changed, f"run `fes_mj reproduce` again: {changed} changed"

@@ -1,0 +1,72 @@
+"""Every check of the harness by name: its limit and why, what it guards against, what usually breaks it."""
+
+from __future__ import annotations
+
+import difflib
+import tomllib
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import NamedTuple
+
+from fes_mj.errors import InputError
+
+_FILE = Path(__file__).parent / "data" / "checks.toml"
+
+
+@dataclass(frozen=True)
+class Criterion:
+    """One row of data/checks.toml."""
+
+    name: str
+    kind: str  # cross-check, code verification, solution verification, benchmark, validation
+    quantity: str  # what is measured, in words
+    limit: float
+    unit: str  # "" is relative or a count
+    reason: str  # why this limit
+    guards: str
+    breaks: str
+
+
+class Check(NamedTuple):
+    """One comparison: a value that must stay at or below its limit, both in `unit`; subject says of what."""
+
+    name: str
+    value: float
+    limit: float
+    unit: str = ""
+    subject: str = ""
+
+    @property
+    def ok(self) -> bool:
+        return self.value <= self.limit  # NaN is not
+
+    @property
+    def factor(self) -> float:
+        """By how many times its limit the value is; infinite beyond a limit of zero, and for NaN."""
+        if self.limit > 0 and self.value == self.value:
+            return self.value / self.limit
+        return 0.0 if self.ok else float("inf")
+
+
+@cache
+def criteria() -> dict[str, Criterion]:
+    """All checks by name, in the order of the file."""
+    rows = tomllib.loads(_FILE.read_text(encoding="utf-8"))
+    return {name: Criterion(name, **row) for name, row in rows.items()}
+
+
+def check(name: str, value: float, subject: str = "") -> Check:
+    """A measured value beside the limit that its name stands for."""
+    criterion = criteria()[name]
+    return Check(name, float(value), criterion.limit, criterion.unit, subject)
+
+
+def find(name: str) -> Criterion:
+    """The criterion of a name, however it is spaced. Raises InputError, with the nearest names, if there is none."""
+    key = name.strip().lower().replace(" ", "_").replace("-", "_")
+    if key not in criteria():
+        near = difflib.get_close_matches(key, criteria(), n=3)
+        hint = f"did you mean {' or '.join(near)}?" if near else f"it must be one of {', '.join(criteria())}"
+        raise InputError(f"{name}: no such check; {hint}")
+    return criteria()[key]

@@ -1,0 +1,1 @@
+"""What keeps the harness honest: independent references, refinement, benchmarks, injected faults, the report."""

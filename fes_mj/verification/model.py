@@ -1,0 +1,84 @@
+"""The torque map and the MuJoCo model before anything moves: do they say what they were told?"""
+
+from __future__ import annotations
+
+import math
+
+import mujoco
+import numpy as np
+
+from fes_mj import kinematics
+from fes_mj.checks import Check
+from fes_mj.mjcf import CUTS, build_mjcf, mjcf_text
+from fes_mj.torque import REFERENCE, TABLE_SIZE, TOP_DEAD_CENTRE, TorqueMap, joint_angles
+from fes_mj.verification.case import Case
+
+# What a reader of the model file must get back.
+FIELDS = (
+    *("body_pos", "body_quat", "body_mass", "body_inertia", "body_ipos", "jnt_axis", "jnt_pos", "qpos0"),
+    *("eq_data", "eq_solref", "eq_solimp", "site_pos", "actuator_gear", "actuator_gainprm", "actuator_biasprm"),
+    *("key_qpos", "key_qvel", "key_ctrl"),
+)
+
+
+def map_checks(case: Case) -> list[Check]:
+    """The torque map on the tricycle it was made from, and its two implementations against each other."""
+    torque_map = TorqueMap(case.moments)
+    motion = kinematics.solve(case.design, np.linspace(0, 2 * np.pi, 360, endpoint=False))
+    spread = 0.0
+    for joint, (angle, coefficient) in joint_angles(motion).items():
+        rate = case.cadence * coefficient
+        scalar, array = torque_map.feedback(joint), torque_map.moment(joint, angle, rate)
+        values = [scalar(*pair) for pair in zip(angle.tolist(), rate.tolist(), strict=True)]
+        spread = max(spread, float(np.abs(values - array).max()))
+    return [case.check("torque_map", map_error(case)), case.check("map_feedback", spread)]
+
+
+def map_error(case: Case) -> float:
+    """On its own tricycle the map must give the moments back, at every 0.1 deg of crank angle, N m."""
+    after = np.arange(TABLE_SIZE) * (2 * np.pi / TABLE_SIZE)  # from top dead centre
+    motion, torque_map = kinematics.solve(REFERENCE, TOP_DEAD_CENTRE + after), TorqueMap(case.moments)
+    error = 0.0
+    for joint, (angle, rate) in joint_angles(motion).items():
+        given = np.interp(after, case.moments.crank_angle, getattr(case.moments, joint), period=2 * np.pi)
+        moment = torque_map.moment(joint, angle, REFERENCE.linkage.cadence * rate)
+        error = max(error, float(np.abs(moment - given).max()))
+    return error
+
+
+def model_checks(case: Case) -> list[Check]:
+    """The compiled model at its keyframe, and the file written of it."""
+    model = build_mjcf(case.design, cadence=case.cadence).compile()
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    mujoco.mj_forward(model, data)
+    loops = data.efc_type == mujoco.mjtConstraint.mjCNSTR_EQUALITY
+    cuts = [cut for cut in CUTS if cut in case.design.linkage.architecture.joints]
+    closed = np.sum(loops) == 3 * len(cuts)  # three equations a pin, or there is nothing to measure
+    speeds = data.efc_J.reshape(-1, model.nv)[loops] @ data.qvel
+    return [
+        case.check("keyframe", np.abs(data.efc_pos[loops]).max() if closed else math.inf),
+        case.check("keyframe_speed", np.abs(speeds).max() if closed else math.inf),
+        case.check("planarity", tilt(data)),
+        case.check("model_file", file_difference(case)),
+    ]
+
+
+def tilt(data: mujoco.MjData) -> float:
+    """Largest angle between a hinge and the normal of the linkage's plane, deg."""
+    along = np.hypot(data.xaxis[:, 0], data.xaxis[:, 2])
+    return math.degrees(np.arctan2(along, np.abs(data.xaxis[:, 1])).max())
+
+
+def file_difference(case: Case) -> float:
+    """Largest difference of any number between the model and the one read back from its own file."""
+    spec = build_mjcf(case.design, cadence=case.cadence)
+    model = spec.compile()
+    again = mujoco.MjModel.from_xml_string(mjcf_text(case.design, cadence=case.cadence))
+    pairs = [(getattr(model, field), getattr(again, field)) for field in FIELDS]
+    pairs.append(
+        (np.array([model.opt.timestep, *model.opt.gravity]), np.array([again.opt.timestep, *again.opt.gravity]))
+    )
+    if any(np.shape(one) != np.shape(other) for one, other in pairs):
+        return math.inf
+    return max(float(np.abs(one - other).max(initial=0.0)) for one, other in pairs)
