@@ -104,13 +104,13 @@ def quasi_static(
 
 
 def joint_moments(motion: Motion, moments: JointMoments, cadence: Any = None) -> tuple[Any, Any]:
-    """Knee and hip moment, N m, that the torque map gives along a motion.
+    """Knee and hip moment, N m, that the torque map gives along a motion at forward crank speed.
 
-    cadence: crank speed in rad/s, above zero, by default the design's own; it counts with a torque-velocity relation.
+    cadence: rad/s, by default the design's own; only its size counts, and only with a torque-velocity relation.
     """
-    cadence = motion.design.linkage.cadence if cadence is None else cadence
+    speed = abs(motion.design.linkage.cadence if cadence is None else cadence)
     torque_map, angles = TorqueMap(moments), joint_angles(motion)
-    knee, hip = (torque_map.moment(joint, angle, cadence * rate) for joint, (angle, rate) in angles.items())
+    knee, hip = (torque_map.moment(joint, angle, speed * rate) for joint, (angle, rate) in angles.items())
     return knee, hip
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +20,7 @@ from fes_mj.uncertainty import power_weights
 
 UNITS = {"power": "W", "crank_power": "W", "moment": "N m", "work_share": "1"}
 DIRECTIONS = {"extension": 1.0, "flexion": -1.0, "both": 0.0}
+LARGEST_NUMBER = 1e6  # in any unit here; beyond it something else was meant
 _ANGLES = np.linspace(0, 2 * np.pi, 1440, endpoint=False)
 
 
@@ -45,18 +46,19 @@ def load_evidence(path: Path = DATA / "evidence.toml") -> list[Evidence]:
     """All rows. Raises InputError naming the row and the key for anything that is not evidence."""
     try:
         content = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError, RecursionError) as error:
         raise InputError(f"{path}: cannot read the evidence: {error}") from None
     tables = content.get("evidence", [])
-    if not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
-        raise InputError(f"{path}: the evidence must be tables [[evidence]]")
+    sources = content.get("source", {})
+    if not isinstance(tables, list) or not all(isinstance(table, dict) for table in [sources, *tables]):
+        raise InputError(f"{path}: the evidence must be tables [[evidence]], its sources a table [source]")
     rows: list[Evidence] = []
     for number, table in enumerate(tables, 1):
         try:
             rows.append(Evidence(**table))
         except TypeError as error:
             raise InputError(f"{path}: evidence row {number} ({table.get('name')}): {error}") from None
-        _check(path, rows[-1], content.get("source", {}))
+        _check(path, rows[-1], sources)
         if rows[-1].name in {row.name for row in rows[:-1]}:
             raise InputError(f"{path}: evidence {rows[-1].name!r} is given twice; give each row a name of its own")
     if missing := [group for group in GROUPS if group not in {row.group for row in rows}]:
@@ -65,6 +67,10 @@ def load_evidence(path: Path = DATA / "evidence.toml") -> list[Evidence]:
 
 
 def _check(path: Path, row: Evidence, sources: dict[str, str]) -> None:
+    for field in fields(row):
+        if field.type == "str" and not isinstance(getattr(row, field.name), str):
+            shown = str(getattr(row, field.name))[:40]
+            raise InputError(f"{path}: evidence {str(row.name)[:40]!r}: {field.name} is {shown!r}; it must be a text")
     allowed: dict[str, tuple[Any, Any]] = {
         "group": (row.group, GROUPS),
         "quantity": (row.quantity, tuple(UNITS)),
@@ -83,10 +89,15 @@ def _check(path: Path, row: Evidence, sources: dict[str, str]) -> None:
         positive["leg_m"] = row.leg_m
     for key, (value, choices) in allowed.items():
         if value not in choices:
-            raise InputError(f"{path}: evidence {row.name!r}: {key} is {value!r}; it must be one of {choices}")
+            raise InputError(
+                f"{path}: evidence {row.name!r}: {key} is {str(value)[:40]!r}; it must be one of {choices}"
+            )
     for key, number in {"value": row.value, **positive}.items():
-        if isinstance(number, bool) or not isinstance(number, int | float) or not np.isfinite(number):
-            raise InputError(f"{path}: evidence {row.name!r}: {key} is {number!r}; it must be a finite number")
+        if isinstance(number, bool) or not isinstance(number, int | float) or not abs(number) <= LARGEST_NUMBER:
+            raise InputError(
+                f"{path}: evidence {row.name!r}: {key} is {str(number)[:40]!r}; "
+                f"it must be a finite number, at most {LARGEST_NUMBER:g}"
+            )
         if key in positive and number <= 0:
             raise InputError(f"{path}: evidence {row.name!r}: {key} is {number}; it must be above 0")
 

@@ -102,7 +102,7 @@ def test_knee_plateau_of_section_7() -> None:
         ('unit = "W"', 'unit = "kW"', "unit is 'kW'"),
         ("error = 0.4", "error = -0.4", "it must be above 0"),
         ("error = 0.4", "error = 0.0", "it must be above 0"),
-        ("value = 31.29", "value = nan", "value is nan; it must be a finite number"),
+        ("value = 31.29", "value = nan", "value is 'nan'; it must be a finite number"),
         ('source = "table1"', 'source = "rumour"', "source is 'rumour'"),
         ("value = 31.29", "vlaue = 31.29", "unexpected keyword argument 'vlaue'"),
     ],

@@ -70,12 +70,14 @@ def test_evidence_that_contradicts_itself_is_named(old: str, new: str, name: str
     ("old", "new", "words"),
     [
         ("value = 31.29", 'value = "much"', "value is 'much'; it must be a finite number"),
-        ("error = 0.4", "error = true", "error is True; it must be a finite number"),
+        ("error = 0.4", "error = true", "error is 'True'; it must be a finite number"),
         ("leg_m = 0.515", "leg_m = 0.0", "leg_m is 0.0; it must be above 0"),
         ("leg_m = 0.515\n", "", "leg_m is 0.0; it must be above 0"),
         ("angle_deg = 73.0\n", "", "angle_deg is 0.0; it must be above 0"),
         ('name = "p1p2 power in R1"', 'name = "p1p2 power in TRT"', "'p1p2 power in TRT' is given twice"),
         ('group = "p1p3"', 'group = "p1p2"', "there is no evidence for group 'p1p3'; both groups need some"),
+        ("value = 31.29", f"value = 1{400 * '0'}", "it must be a finite number, at most 1e+06"),
+        ('name = "p1p2 power in R1"', "name = [1]", "name is '[1]'; it must be a text"),
         ("[[evidence]]", "[[rumour]]", "there is no evidence for group 'p1p2'"),
     ],
 )
