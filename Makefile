@@ -2,9 +2,9 @@
 PYTHON ?= python3
 VENV ?= .venv
 BIN = $(VENV)/bin
-EXTRAS = video,test,lint
+EXTRAS = video,report,test,lint
 
-.PHONY: demo test test-long lint format benchmark catalogue reproduce clean
+.PHONY: demo test test-long lint format benchmark catalogue reproduce verification models readers clean
 
 demo: $(VENV)/.ready
 	mkdir -p demo
@@ -30,6 +30,10 @@ benchmark: $(VENV)/.ready
 	$(BIN)/pip install --quiet -c constraints.txt -e '.[benchmark]'
 	$(BIN)/python tools/benchmark.py
 
+# Every check on every design, refined, with all faults injected: results/verification.md
+verification: $(VENV)/.ready
+	$(BIN)/python tools/update_verification.py
+
 # What the package ships as data: the identified designs and the recovered moments.
 catalogue: $(VENV)/.ready
 	$(BIN)/python tools/make_catalogue.py
@@ -38,6 +42,14 @@ catalogue: $(VENV)/.ready
 # The paper's tables and figures beside ours: results/
 reproduce: $(VENV)/.ready
 	$(BIN)/fes_mj reproduce
+
+# The exported models of the five designs, in mjcf/.
+models: $(VENV)/.ready
+	$(BIN)/python tools/make_models.py
+
+# Install the other readers of the models, each into an environment of its own, and compare them with MuJoCo.
+readers: $(VENV)/.ready
+	$(BIN)/python tools/conformance.py --build
 
 $(VENV)/.ready: pyproject.toml constraints.txt
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
@@ -49,4 +61,4 @@ $(VENV)/.ready: pyproject.toml constraints.txt
 	touch $@
 
 clean:
-	rm -rf $(VENV) demo
+	rm -rf $(VENV) .readers demo

@@ -31,27 +31,27 @@ class Part(NamedTuple):
     """A default class of geoms and the material it wears."""
 
     shape: mujoco.mjtGeom
-    size: tuple[float, float]  # m: radius of a capsule or cylinder; half width and half thickness of a bar
+    size: float  # m: radius of a capsule or cylinder, half the thickness of a pad
     colour: tuple[float, float, float]  # RGB, each 0 to 1
 
 
 # Hip and knee are coloured as in the plots.
 PARTS = {
-    "thigh": Part(_CAPSULE, (0.065, 0), (0.80, 0.70, 0.60)),
-    "shank": Part(_CAPSULE, (0.048, 0), (0.88, 0.79, 0.69)),
-    "boot": Part(_CAPSULE, (0.052, 0), (0.27, 0.30, 0.35)),
-    "hip": Part(_CYLINDER, (0.028, 0), (0.85, 0.15, 0.75)),
-    "knee": Part(_CYLINDER, (0.028, 0), (0.05, 0.72, 0.80)),
-    "crank": Part(_BOX, (0.013, 0.006), (0.88, 0.49, 0.16)),
-    "rocker": Part(_BOX, (0.013, 0.006), (0.45, 0.42, 0.68)),
-    "coupler": Part(_BOX, (0.013, 0.006), (0.36, 0.58, 0.36)),
-    "pin": Part(_CYLINDER, (0.011, 0), (0.22, 0.23, 0.26)),
-    "chainring": Part(_CYLINDER, (0.075, 0), (0.36, 0.38, 0.42)),
-    "frame": Part(_CAPSULE, (0.018, 0), (0.64, 0.67, 0.70)),
-    "seat": Part(_BOX, (0.02, 0.16), (0.45, 0.48, 0.53)),
+    "thigh": Part(_CAPSULE, 0.065, (0.80, 0.70, 0.60)),
+    "shank": Part(_CAPSULE, 0.048, (0.88, 0.79, 0.69)),
+    "boot": Part(_CAPSULE, 0.052, (0.27, 0.30, 0.35)),
+    "hip": Part(_CYLINDER, 0.028, (0.85, 0.15, 0.75)),
+    "knee": Part(_CYLINDER, 0.028, (0.05, 0.72, 0.80)),
+    "crank": Part(_CAPSULE, 0.011, (0.88, 0.49, 0.16)),
+    "rocker": Part(_CAPSULE, 0.011, (0.45, 0.42, 0.68)),
+    "coupler": Part(_CAPSULE, 0.011, (0.36, 0.58, 0.36)),
+    "pin": Part(_CYLINDER, 0.011, (0.22, 0.23, 0.26)),
+    "chainring": Part(_CYLINDER, 0.075, (0.36, 0.38, 0.42)),
+    "frame": Part(_CAPSULE, 0.018, (0.64, 0.67, 0.70)),
+    "seat": Part(_BOX, 0.02, (0.45, 0.48, 0.53)),
 }
 BACKREST = 0.45  # m
-SEAT_LENGTH = 0.25  # m
+SEAT_LENGTH, SEAT_WIDTH = 0.25, 0.32  # m
 SEAT_DEPTH = 0.12  # m from the hip down to the seat
 FIELD_OF_VIEW = 30.0  # deg, vertical
 ASPECT = 4 / 3  # the narrowest picture that still shows everything
@@ -63,7 +63,7 @@ def define_parts(spec: mujoco.MjSpec, parent: Any) -> None:
     for name, part in PARTS.items():
         spec.add_material(name=name, rgba=(*part.colour, 1))
         geom = spec.add_default(name, parent).geom
-        geom.type, geom.size, geom.material = part.shape, (*part.size, 0), name
+        geom.type, geom.size, geom.material = part.shape, (part.size, 0, 0), name
 
 
 def draw(spec: mujoco.MjSpec, design: Design, legs: Sequence[Leg]) -> None:
@@ -91,7 +91,7 @@ def _bar(
 def _draw_limb(spec: mujoco.MjSpec, design: Design, leg: Leg) -> None:
     across = leg.outwards * LAYERS["leg"]
     ankle, heel, toe = foot_points(design)
-    sole, radius = (toe - heel) / abs(toe - heel), PARTS["boot"].size[0]
+    sole, radius = (toe - heel) / abs(toe - heel), PARTS["boot"].size
     for part, body, name, start, end in (
         ("thigh", "thigh", "thigh", 0j, design.rider.thigh),
         ("shank", "shank", "shank", 0j, ankle),
@@ -138,11 +138,16 @@ def _draw_frame(spec: mujoco.MjSpec, design: Design, middle: float) -> None:
     """Seat, tube from it over the fixed pivots to the crank, and the chainring."""
     linkage, back = design.linkage, np.exp(1j * design.linkage.seat_angle)
     corner = SEAT_DEPTH * (0.5 - 1j)
-    for name, start, end in (
-        ("seat", corner - SEAT_LENGTH, corner),
-        ("backrest", corner, corner + BACKREST * back),
-    ):
-        _bar(spec, "tricycle", "seat", name, (start, middle), (end, middle))
+    frame, pad = spec.body("tricycle"), spec.find_default("seat")
+    for name, along in (("seat", -SEAT_LENGTH), ("backrest", BACKREST * back)):
+        centre, turn = corner + along / 2, -float(np.angle(along)) / 2  # half the turn about +y
+        frame.add_geom(
+            pad,
+            name=name,
+            pos=[round(value, 4) for value in (centre.real, middle, centre.imag)],
+            quat=[round(value, 6) + 0.0 for value in (math.cos(turn), 0.0, math.sin(turn), 0.0)],
+            size=(abs(along) / 2, SEAT_WIDTH / 2, PARTS["seat"].size),
+        )
     tubes = {"seat_tube": (corner, linkage.ground), "boom": (linkage.ground, linkage.crank_centre)}
     for name, (start, end) in tubes.items():
         if start != end:  # a TRT's ground link ends at the crank
@@ -151,14 +156,27 @@ def _draw_frame(spec: mujoco.MjSpec, design: Design, middle: float) -> None:
 
 
 def _add_camera(spec: mujoco.MjSpec, design: Design) -> None:
-    """From the rider's right, as wide as the turn; the rider looks to the right of the picture."""
+    """From the rider's right; the rider looks to the right of the picture."""
+    centre, distance = framing(design)
+    camera = spec.body("tricycle").add_camera(name="side", fovy=FIELD_OF_VIEW)
+    camera.pos = [round(value, 3) for value in (centre.real, distance, centre.imag)]
+    camera.alt.type, camera.alt.xyaxes = mujoco.mjtOrientation.mjORIENTATION_XYAXES, (-1, 0, 0, 0, 0, 1)
+
+
+def framing(design: Design) -> tuple[complex, float]:
+    """The middle of all that moves or sits (in the plane, m) and the distance from which FIELD_OF_VIEW shows it (m)."""
     points = kinematics.positions(design, kinematics.FULL_TURN)
     ends = [BACKREST * np.exp(1j * design.linkage.seat_angle), *points.values()]
     cloud = np.concatenate([np.ravel(value) for value in ends])
     low = complex(cloud.real.min(), cloud.imag.min()) - MARGIN * (1 + 1j)
     high = complex(cloud.real.max(), cloud.imag.max()) + MARGIN * (1 + 1j)
-    centre, size = (low + high) / 2, high - low
-    distance = max(size.imag, size.real / ASPECT) / 2 / math.tan(math.radians(FIELD_OF_VIEW) / 2)
-    camera = spec.body("tricycle").add_camera(name="side", fovy=FIELD_OF_VIEW)
-    camera.pos = [round(value, 3) for value in (centre.real, distance, centre.imag)]
-    camera.alt.type, camera.alt.xyaxes = mujoco.mjtOrientation.mjORIENTATION_XYAXES, (-1, 0, 0, 0, 0, 1)
+    size = high - low
+    return (low + high) / 2, max(size.imag, size.real / ASPECT) / 2 / math.tan(math.radians(FIELD_OF_VIEW) / 2)
+
+
+def lowest_point(design: Design) -> float:
+    """How far above (below, if negative) the hip the lowest point of boot, linkage and seat comes in a turn, m."""
+    motion = kinematics.solve(design, kinematics.FULL_TURN)
+    foot = [motion.body_point("shank", point).value for point in foot_points(design)[1:]]
+    lowest = min(float(np.min(np.imag(point))) for point in (*foot, *(jet.value for jet in motion.points.values())))
+    return min(lowest - PARTS["boot"].size, -SEAT_DEPTH - PARTS["seat"].size)

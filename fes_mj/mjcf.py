@@ -8,7 +8,7 @@ phi_h, `knee` is phi_k, `crank` is theta_2.
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, Literal
 
 import mujoco
 import numpy as np
@@ -22,9 +22,13 @@ TARGET_TIMESTEP = 0.25e-3  # s; the loop gap grows with (speed * step)^2, the er
 # The power that masses swing to and fro grows with the cube of the cadence, and the error of reading it with the step:
 # above FAST the number of steps in a turn grows with that cube from FEWEST_STEPS.
 FAST, FEWEST_STEPS = 10.5, 2400  # rad/s (100 rpm), per turn
+INTEGRATORS = {"discrete": mujoco.mjtIntegrator.mjINT_DISCRETE, "euler": mujoco.mjtIntegrator.mjINT_EULER}
+SERVO = "crank_servo"
 SERVO_GAIN = 1e6  # N m s/rad; holds the cadence to 1e-5 from 10 rpm on, stable only with the `discrete` integrator
+FLYWHEEL = 1e6  # kg m^2 of crank armature; holds the cadence to 1e-6 without a servo
 # With MuJoCo's defaults (0.02 s, 0.9) the loops open by 2 to 6 mm and the mean power falls by 43 % (R2) and 26 % (D1).
-# A time constant below 1e-5 s gains nothing: the gap that is left is the time step's.
+# A time constant below 1e-5 s gains nothing: the gap that is left is the time step's. Other integrators than `discrete`
+# raise it to two time steps.
 LOOP_SOLREF = (1e-5, 1.0)
 LOOP_SOLIMP = (0.9999, 0.9999, 0.001, 0.5, 2.0)
 
@@ -54,24 +58,27 @@ def build_mjcf(
     mass_scale: float = 1.0,
     gravity: float = GRAVITY,
     loop_solref: tuple[float, float] | None = None,
-    variant: str = "sites",
+    anchors: Literal["sites", "bodies"] = "sites",
+    driven: bool = True,
+    integrator: Literal["discrete", "euler"] = "discrete",
 ) -> mujoco.MjSpec:
     """The model of a design at a cadence (rad/s, by default Eq. 16), assembled, with a keyframe at crank angle 0.
 
     timestep: s; rounded so that a turn is a whole number of steps. mass_scale: factor on every mass and inertia.
     loop_solref: MuJoCo's time constant (s) and damping ratio of the loops, by default LOOP_SOLREF.
-    variant: loops anchored at "sites" or on "bodies". Raises AssemblyError if the linkage does not close,
-    InputError if MuJoCo refuses it.
+    anchors: what the loops are closed between. driven: with joint motors and a cadence that is held, by a servo or,
+    with integrator "euler", which a stiff servo makes unstable, by a flywheel.
+    Raises AssemblyError if the linkage does not close, InputError if MuJoCo refuses it.
     """
     kinematics.require_assembly(design)
     cadence = design.linkage.cadence if cadence is None else cadence
     spec = mujoco.MjSpec()
     spec.modelname = design.name
-    spec.comment = f"{design.linkage.architecture.title}: {design.name}, {cadence * 30 / math.pi:.2f} rpm"
+    spec.comment = f"{design.name}: {design.linkage.architecture.title}, {cadence * 30 / math.pi:.2f} rpm"
     # as authored and at full precision: the default output has six digits, half a micrometre of loop error
     spec.compiler.savecompiled = spec.compiler.savecanonical = False
     spec.compiler.degree = False
-    set_options(spec, 2 * math.pi / cadence / steps_per_turn(cadence, timestep), gravity)
+    set_options(spec, 2 * math.pi / cadence / steps_per_turn(cadence, timestep), gravity, integrator)
     _set_defaults(spec, loop_solref or LOOP_SOLREF)
     # one fixed root: some readers drop all bodies but the first
     root = spec.worldbody.add_body(name="tricycle", childclass="tricycle")
@@ -82,10 +89,13 @@ def build_mjcf(
     state = {"crank": (0.0, cadence)}
     for leg in LEGS[legs]:
         start = _start_state(design, leg, cadence)
-        _add_leg(spec, root, design, leg, masses, start, variant)
+        _add_leg(spec, root, design, leg, masses, start, anchors)
         state |= {leg.prefix + joint: values for joint, values in start.items()}
     appearance.draw(spec, design, LEGS[legs])
-    _add_drives(spec, LEGS[legs])
+    if driven:
+        _add_motors(spec, LEGS[legs])
+        _hold_cadence(spec, integrator)
+    _add_sensors(spec)
     _add_keyframe(spec, state)
     return spec
 
@@ -122,12 +132,12 @@ def _turned(inertia: Inertia, angle: float) -> Inertia:
     return inertia._replace(centre=inertia.centre * complex(math.cos(angle), math.sin(angle)))
 
 
-def set_options(spec: mujoco.MjSpec, timestep: float, gravity: float) -> None:
+def set_options(spec: mujoco.MjSpec, timestep: float, gravity: float, integrator: str = "discrete") -> None:
     """Solver options for closed planar loops: time step in s, gravity in m/s^2 along -z."""
     option = spec.option
     option.timestep = timestep
     option.gravity = (0.0, 0.0, -gravity)
-    option.integrator = mujoco.mjtIntegrator.mjINT_DISCRETE
+    option.integrator = INTEGRATORS[integrator]
     option.solver = mujoco.mjtSolver.mjSOL_NEWTON
     option.jacobian = mujoco.mjtJacobian.mjJAC_DENSE  # 4.0.0's sparse Newton Hessian is wrong
     option.disableflags = int(mujoco.mjtDisableBit.mjDSBL_CONTACT | mujoco.mjtDisableBit.mjDSBL_ISLAND)
@@ -181,7 +191,7 @@ def _add_leg(
     leg: Leg,
     masses: dict[str, Inertia],
     start: dict[str, tuple[float, float]],
-    variant: str,
+    anchors: str,
 ) -> None:
     """Thigh and shank, rocker and coupler of one leg, its loops closed."""
     linkage, prefix = design.linkage, leg.prefix
@@ -198,10 +208,10 @@ def _add_leg(
         add(rocker, "coupler", (linkage.rocker, 0, 0), "coupler")
     for cut in CUTS:
         if cut in linkage.architecture.joints:
-            _close_loop(spec, design, leg, cut, variant)
+            _close_loop(spec, design, leg, cut, anchors)
 
 
-def _close_loop(spec: mujoco.MjSpec, design: Design, leg: Leg, cut: str, variant: str) -> None:
+def _close_loop(spec: mujoco.MjSpec, design: Design, leg: Leg, cut: str, anchors: str) -> None:
     """Two sites at a cut joint, one on each of its bodies, the constraint between them and a sensor of the gap."""
     architecture, owners, sites = design.linkage.architecture, [], []
     for body in architecture.joints[cut]:
@@ -214,7 +224,7 @@ def _close_loop(spec: mujoco.MjSpec, design: Design, leg: Leg, cut: str, variant
         owners.append(owner)
         sites.append(spec.body(owner).add_site(name=f"{leg.prefix}{body}_{cut}", pos=pos))
     equality = spec.add_equality(spec.find_default("tricycle"), name=leg.prefix + cut, type=mujoco.mjtEq.mjEQ_CONNECT)
-    if variant == "bodies":
+    if anchors == "bodies":
         # the second anchor follows from the pose in the file, which is assembled
         equality.objtype, equality.name1, equality.name2 = mujoco.mjtObj.mjOBJ_BODY, *owners
         equality.data[:3] = sites[0].pos
@@ -231,13 +241,24 @@ def _close_loop(spec: mujoco.MjSpec, design: Design, leg: Leg, cut: str, variant
     )
 
 
-def _add_drives(spec: mujoco.MjSpec, legs: tuple[Leg, ...]) -> None:
-    """Joint motors (N m, extension positive), the servo that holds the cadence, the crank-torque sensor."""
+def _add_motors(spec: mujoco.MjSpec, legs: tuple[Leg, ...]) -> None:
+    """Joint motors, N m, extension positive."""
     for leg in legs:
         for joint in (leg.prefix + "hip", leg.prefix + "knee"):
             spec.add_actuator(name=joint, trntype=mujoco.mjtTrn.mjTRN_JOINT, target=joint).set_to_motor()
-    servo = spec.add_actuator(name="crank_servo", trntype=mujoco.mjtTrn.mjTRN_JOINT, target="crank")
-    servo.set_to_velocity(kv=SERVO_GAIN)
+
+
+def _hold_cadence(spec: mujoco.MjSpec, integrator: str) -> None:
+    """A velocity servo on the crank, or a flywheel where the integrator does not bear one."""
+    if integrator == "discrete":
+        servo = spec.add_actuator(name=SERVO, trntype=mujoco.mjtTrn.mjTRN_JOINT, target="crank")
+        servo.set_to_velocity(kv=SERVO_GAIN)
+    else:
+        spec.joint("crank").armature = FLYWHEEL
+
+
+def _add_sensors(spec: mujoco.MjSpec) -> None:
+    """The torque between frame and crank, angle and speed of every joint."""
     spec.add_sensor(
         name="crank_torque",
         type=mujoco.mjtSensor.mjSENS_TORQUE,
@@ -258,16 +279,9 @@ def _add_keyframe(spec: mujoco.MjSpec, state: dict[str, tuple[float, float]]) ->
         model = spec.compile()
     except ValueError as error:
         raise InputError(f"{spec.modelname}: MuJoCo cannot build the model: {' '.join(str(error).split())}") from None
-    qpos, qvel, ctrl = np.zeros(model.nq), np.zeros(model.nv), np.zeros(model.nu)
+    qpos, qvel = np.zeros(model.nq), np.zeros(model.nv)
     for joint, (angle, speed) in state.items():
         address = model.joint(joint).qposadr[0]
         qpos[address], qvel[address] = angle, speed
-    ctrl[model.actuator("crank_servo").id] = state["crank"][1]
+    ctrl = [state["crank"][1] if actuator.name == SERVO else 0.0 for actuator in spec.actuators]
     spec.add_key(name="start", qpos=qpos, qvel=qvel, ctrl=ctrl)
-
-
-def mjcf_text(design: Design, **options: Any) -> str:
-    """The model of build_mjcf (same arguments) as MJCF that reloads bit for bit."""
-    spec = build_mjcf(design, **options)
-    spec.compile()
-    return spec.to_xml()

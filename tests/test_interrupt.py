@@ -76,3 +76,26 @@ def test_a_kill_in_the_middle_of_writing_leaves_the_old_file(tmp_path: Path) -> 
     done = subprocess.run([sys.executable, "-c", script, str(target)], env=dict(os.environ), check=False)
     assert done.returncode == -signal.SIGKILL
     assert target.read_text() == "old"
+
+
+def test_a_compiled_module_that_was_being_loaded_counts_as_interrupted(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from fes_mj import cli
+
+    def loading(*_: object, **__: object) -> None:
+        try:
+            raise ImportError("initialization failed") from KeyboardInterrupt()
+        except ImportError as error:
+            raise ImportError("initialization failed") from error
+
+    monkeypatch.setattr(cli, "app", loading)
+    assert cli.run(["simulate", "d1"]) == 130
+    assert capsys.readouterr().err == "fes_mj: interrupted; nothing was left half-written\n"
+
+    def missing(*_: object, **__: object) -> None:
+        raise ImportError("no such module")
+
+    monkeypatch.setattr(cli, "app", missing)
+    with pytest.raises(ImportError, match="no such module"):
+        cli.run(["simulate", "d1"])

@@ -10,12 +10,12 @@ from fes_mj.mjcf import build_mjcf, steps_per_turn
 from fes_mj.segments import inertias
 
 
-@pytest.mark.parametrize("variant", ["sites", "bodies"])
+@pytest.mark.parametrize("anchors", ["sites", "bodies"])
 @pytest.mark.parametrize("legs", [1, 2])
 def test_the_keyframe_is_assembled_and_moves_as_the_kinematics_say(
-    design: fes_mj.Design, legs: int, variant: str
+    design: fes_mj.Design, legs: int, anchors: str
 ) -> None:
-    model = build_mjcf(design, legs=legs, variant=variant).compile()
+    model = build_mjcf(design, legs=legs, anchors=anchors).compile()
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, 0)
     mujoco.mj_forward(model, data)

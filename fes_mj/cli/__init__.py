@@ -55,9 +55,12 @@ def run(arguments: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         return _fail(INTERRUPTION, INTERRUPTED)
     except ImportError as error:
-        if isinstance(error.__cause__, KeyboardInterrupt):  # while a compiled module was being loaded
-            return _fail(INTERRUPTION, INTERRUPTED)
-        raise
+        cause: BaseException | None = error
+        while cause and not isinstance(cause, KeyboardInterrupt):
+            cause = cause.__cause__
+        if cause is None:
+            raise
+        return _fail(INTERRUPTION, INTERRUPTED)  # it came while a compiled module was being loaded
 
 
 def _fail(message: object, code: int) -> int:

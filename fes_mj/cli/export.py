@@ -1,4 +1,4 @@
-"""`fes_mj export`: the MJCF model of a design, for other tools."""
+"""`fes_mj export`: the MJCF model of a design and its turn as a table, for other tools."""
 
 from __future__ import annotations
 
@@ -7,10 +7,14 @@ from typing import Annotated, Literal
 
 from cyclopts import Parameter
 
-from fes_mj.cli.options import crank_speed
+from fes_mj.cli.options import LoadOptions
 from fes_mj.cli.output import output
-from fes_mj.design_file import load_design
+from fes_mj.errors import InputError
 from fes_mj.files import require_writable, write_text
+
+_DEFAULTS = LoadOptions()
+_SCENE = "scene.xml"
+_Variant = Literal["sites", "bodies", "passive", "two-legs", "compatible"]  # the keys of fes_mj.export.VARIANTS
 
 
 def export(
@@ -18,30 +22,44 @@ def export(
     /,
     *,
     out: Annotated[Path, Parameter(name=["--out", "-o"])],
-    variant: Literal["sites", "bodies"] = "sites",
-    cadence: float | None = None,
-    dims: Literal["identified", "printed"] = "identified",
+    variant: Annotated[list[_Variant] | None, Parameter(negative="")] = None,
+    scene: Annotated[bool, Parameter(negative="")] = False,
+    options: LoadOptions = _DEFAULTS,
 ) -> int:
-    """Write the MJCF model of a design.
+    """Write the MJCF model of a design and, beside it as CSV, its joint and crank moments over a turn.
 
     Parameters
     ----------
     design
         trt, r1, r2, d1, d2, or a path to a design file.
     out
-        The file to write (.xml).
+        The model to write (.xml); the table gets the same name with .csv.
     variant
-        How loops are anchored: at sites, or on bodies (for readers that drop site anchors).
-    cadence
-        Crank speed of the keyframe and the servo, rpm; by default the one at 5.71 km/h.
-    dims
-        Dimensions of a catalogued design: as identified, or as the paper prints them.
+        sites: loops anchored at sites (default); bodies: on bodies, for Drake; passive: no servo and no joint
+        motors; two-legs: half a turn apart on one crank; compatible: Euler integrator and a flywheel, for readers
+        without `discrete`. Give --variant again to combine them.
+    scene
+        Also write scene.xml beside the model: floor, light and camera.
     """
-    loaded = load_design(design, dims)
-    speed = crank_speed(cadence, loaded)
+    loaded = options.load(design)
     require_writable(out, "the model", ".xml")
-    from fes_mj.mjcf import mjcf_text
+    table = out.with_suffix(".csv")
+    require_writable(table, "the table")
+    if scene:
+        if out.name == _SCENE:
+            raise InputError(f"{out}: --scene writes {_SCENE} beside the model; give the model another name")
+        require_writable(out.with_name(_SCENE), "the scene")
+    from fes_mj.export import mjcf_text, scene_text, sidecar_text, variant_options
 
-    write_text(out, mjcf_text(loaded, cadence=speed, variant=variant))
-    output.print(f"model: {out}", markup=False, soft_wrap=True)
+    changes = variant_options(variant or ())
+    texts = {
+        out: mjcf_text(loaded.design, cadence=loaded.cadence, **changes),
+        table: sidecar_text(loaded.design, loaded.moments, loaded.cadence, changes.get("legs", 1)),
+    }
+    if scene:
+        texts[out.with_name(_SCENE)] = scene_text(loaded.design, out.name)
+    for path, text in texts.items():
+        write_text(path, text)
+    for path, what in zip(texts, ("model", "table", "scene"), strict=False):
+        output.print(f"{what}: {path}", markup=False, soft_wrap=True)
     return 0

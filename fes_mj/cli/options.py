@@ -29,8 +29,8 @@ class Loaded(NamedTuple):
 
 @Parameter(name="*")
 @dataclass
-class RunOptions:
-    """Options of every command that needs joint moments.
+class LoadOptions:
+    """Options of every command that needs a design in motion.
 
     Parameters
     ----------
@@ -44,12 +44,6 @@ class RunOptions:
         Dimensions of a catalogued design: as identified, or as the paper prints them.
     torque_velocity
         Let joint moments change with joint speed, by Hill's relation; by default they do not, as in the paper.
-    json
-        Print one JSON object and nothing else.
-    quiet
-        Print nothing but errors.
-    verbose
-        Print more: energies and joint forces.
     """
 
     group: Literal["p1p2", "p1p3"] | None = None
@@ -57,9 +51,6 @@ class RunOptions:
     cadence: float | None = None
     dims: Literal["identified", "printed"] = "identified"
     torque_velocity: Literal["hill"] | None = None
-    json: Annotated[bool, Parameter(negative="")] = False
-    quiet: Annotated[bool, Parameter(alias="-q", negative="")] = False
-    verbose: Annotated[bool, Parameter(alias="-v", negative="")] = False
 
     def load(self, design: str) -> Loaded:
         """Load everything the options name. Raises InputError for what cannot be used."""
@@ -70,6 +61,26 @@ class RunOptions:
         if self.torque_velocity:
             moments = replace(moments, torque_velocity=load_torque_velocity(self.torque_velocity))
         return Loaded(loaded, moments, crank_speed(self.cadence, loaded))
+
+
+@Parameter(name="*")
+@dataclass
+class RunOptions(LoadOptions):
+    """Options of every command that runs a design.
+
+    Parameters
+    ----------
+    json
+        Print one JSON object and nothing else.
+    quiet
+        Print nothing but errors.
+    verbose
+        Print more: energies and joint forces.
+    """
+
+    json: Annotated[bool, Parameter(negative="")] = False
+    quiet: Annotated[bool, Parameter(alias="-q", negative="")] = False
+    verbose: Annotated[bool, Parameter(alias="-v", negative="")] = False
 
 
 def crank_speed(cadence: float | None, design: Design) -> float:

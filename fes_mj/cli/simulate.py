@@ -181,12 +181,11 @@ def _print_details(result: CrossCheck) -> None:
 def _write(result: CrossCheck, out: Path) -> None:
     """Result, cycle and model, each whole or not at all."""
     from fes_mj.crosscheck import cycle_csv
-    from fes_mj.mjcf import build_mjcf
+    from fes_mj.export import mjcf_text
 
     run = result.simulation
     stem = f"{run.design.name}-{run.moments.name}"
-    spec = build_mjcf(run.design, cadence=run.cadence, timestep=run.timestep, legs=len(run.legs))
-    spec.compile()
+    model = mjcf_text(run.design, cadence=run.cadence, timestep=run.timestep, legs=len(run.legs))
     write_text(out / f"{stem}.json", json_text(_summary(result)))
     write_text(out / f"{stem}.csv", cycle_csv(result))
-    write_text(out / f"{stem}.xml", spec.to_xml())
+    write_text(out / f"{stem}.xml", model)

@@ -9,7 +9,8 @@ import numpy as np
 
 from fes_mj import kinematics
 from fes_mj.checks import Check
-from fes_mj.mjcf import CUTS, build_mjcf, mjcf_text
+from fes_mj.export import mjcf_text
+from fes_mj.mjcf import CUTS, build_mjcf
 from fes_mj.torque import REFERENCE, TABLE_SIZE, TOP_DEAD_CENTRE, TorqueMap, joint_angles
 from fes_mj.verification.case import Case
 
