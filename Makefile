@@ -4,7 +4,7 @@ VENV ?= .venv
 BIN = $(VENV)/bin
 EXTRAS = video,optimize,cluster,report,test,lint
 
-.PHONY: demo test test-long lint format benchmark catalogue verification models readers clean
+.PHONY: demo test test-long lint format benchmark catalogue reproduce verification models readers clean
 
 demo: $(VENV)/.ready
 	mkdir -p demo
@@ -39,6 +39,10 @@ verification: $(VENV)/.ready
 catalogue: $(VENV)/.ready
 	$(BIN)/python tools/make_catalogue.py
 	$(BIN)/python tools/reconstruct_moments.py
+
+# The paper's tables and figures beside ours: results/
+reproduce: $(VENV)/.ready
+	$(BIN)/fes_mj reproduce
 
 # The exported models of the five designs, in mjcf/.
 models: $(VENV)/.ready

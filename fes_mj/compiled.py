@@ -23,6 +23,8 @@ def compiled_loop(torque_map: TorqueMap, drives: dict[str, str]) -> Loop:
 
     It releases Python's lock: loops run side by side in threads. Raises MissingPartError without numba.
     """
+    if torque_map.moments.torque_velocity is not None:
+        raise ValueError("the compiled loop takes moments that do not depend on speed")
     advance = _advance()
     tables = [torque_map.table(joint) for joint in JOINTS]
     kinds = np.array([JOINTS.index(joint) for joint in drives.values()])

@@ -112,7 +112,7 @@ def sidecar_text(design: Design, moments: JointMoments, cadence: float | None = 
     massive, massless = np.zeros((2, SIDECAR_ROWS))
     for leg in LEGS[legs]:
         motion = kinematics.solve(design, angle - leg.lag)
-        of_joint = dict(zip(JOINTS, joint_moments(motion, moments), strict=True))
+        of_joint = dict(zip(JOINTS, joint_moments(motion, moments, cadence), strict=True))
         for joint, angles in (("knee", motion.knee_angle), ("hip", motion.hip_angle)):
             columns[f"{leg.prefix}{joint}_deg"] = np.degrees(angles)
             columns[f"{leg.prefix}{joint}_Nm"] = of_joint[joint]

@@ -38,5 +38,5 @@ def crank_moment(
 ) -> NDArray[np.float64]:
     """Crank moment of one leg, N m, at the given crank angles (rad, any order); its mean is the quasi-static one."""
     motion = kinematics.solve(design, crank_angle)
-    knee, hip = joint_moments(motion, moments)
+    knee, hip = joint_moments(motion, moments, cadence)
     return virtual_work(motion, knee, hip, body_loads(motion, cadence, mass_scale, gravity))

@@ -12,15 +12,27 @@ from pathlib import Path
 from typing import Any
 
 
-def provenance(inputs: Iterable[Path] = ()) -> dict[str, Any]:
-    """Versions, date (UTC), command line without paths, and the SHA-256 of every input file by name."""
+def provenance(inputs: Iterable[Path] = (), packages: Iterable[str] = ()) -> dict[str, Any]:
+    """Versions (also of `packages`), date (UTC), command line without paths, SHA-256 of every input file by name."""
     return {
         "fes_mj": version("fes-mj"),
         "python": platform.python_version(),
         "mujoco": version("mujoco"),
         "numpy": version("numpy"),
         "scipy": version("scipy"),
+        **{package: version(package) for package in packages},
         "date": datetime.now(UTC).isoformat(timespec="seconds"),
-        "command": " ".join([Path(sys.argv[0]).name, *sys.argv[1:]]),
-        "inputs": {path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in inputs},
+        "command": " ".join([_program(Path(sys.argv[0])), *sys.argv[1:]]),
+        "inputs": {_name(path): hashlib.sha256(path.read_bytes()).hexdigest() for path in inputs},
     }
+
+
+def _program(path: Path) -> str:
+    """The script's name; of `python -m package` the package's."""
+    return path.parent.name if path.name == "__main__.py" else path.name
+
+
+def _name(path: Path) -> str:
+    """The file's place among the shipped data, or its bare name: two designs differ only by their folder."""
+    data = Path(__file__).parent / "data"
+    return str(path.relative_to(data)) if path.is_relative_to(data) else path.name

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from fes_mj import kinematics
 from fes_mj.design import BODIES, Design
 from fes_mj.kinematics import Jet, Motion
-from fes_mj.torque import JOINTS, JointMoments, TorqueMap, joint_angles
+from fes_mj.torque import JointMoments, TorqueMap, joint_angles
+from fes_mj.uncertainty import power_weights, standard_deviation
 
 # Trapezium rule over a turn; against 36,000 points the mean power changes by less than 1e-5 of itself.
 TURN_POINTS = 3600
@@ -58,8 +59,19 @@ class QuasiStatic:
 
     @property
     def work_per_turn(self) -> float:
-        """Work of one leg on the crank in one turn, J; it does not depend on the cadence."""
+        """Work of one leg on the crank in one turn, J; without a torque-velocity relation the same at any cadence."""
         return float(2 * np.pi * self.crank_moment.mean())
+
+    @property
+    def power_weights(self) -> NDArray[np.float64]:
+        """Mean power per Fourier coefficient of knee, then hip moment, W/(N m), shape (98,)."""
+        return power_weights(self.motion, self.cadence, self.moments)
+
+    @property
+    def power_sd(self) -> float | None:
+        """Standard deviation of power_mean, W, by the error of recovered moments; None for a user's own moments."""
+        covariance = self.moments.covariance
+        return None if covariance is None else standard_deviation(self.power_weights, covariance)
 
 
 def quasi_static(
@@ -73,12 +85,13 @@ def quasi_static(
     kinematics.require_assembly(design)
     crank_angle = np.linspace(0, 2 * np.pi, points, endpoint=False)
     motion = kinematics.solve(design, crank_angle)
-    knee, hip = joint_moments(motion, moments)
+    cadence = design.linkage.cadence if cadence is None else cadence
+    knee, hip = joint_moments(motion, moments, cadence)
     crank_moment, reactions = equilibrium(motion, knee, hip)
     return QuasiStatic(
         design=design,
         moments=moments,
-        cadence=design.linkage.cadence if cadence is None else cadence,
+        cadence=cadence,
         crank_angle=crank_angle,
         knee_angle=motion.knee_angle,
         hip_angle=motion.hip_angle,
@@ -90,10 +103,14 @@ def quasi_static(
     )
 
 
-def joint_moments(motion: Motion, moments: JointMoments) -> tuple[Any, Any]:
-    """Knee and hip moment, N m, that the torque map gives along a motion at forward crank speed."""
+def joint_moments(motion: Motion, moments: JointMoments, cadence: Any = None) -> tuple[Any, Any]:
+    """Knee and hip moment, N m, that the torque map gives along a motion at forward crank speed.
+
+    cadence: rad/s, by default the design's own; only its size counts, and only with a torque-velocity relation.
+    """
+    speed = abs(motion.design.linkage.cadence if cadence is None else cadence)
     torque_map, angles = TorqueMap(moments), joint_angles(motion)
-    knee, hip = (torque_map.moment(joint, *angles[joint]) for joint in JOINTS)
+    knee, hip = (torque_map.moment(joint, angle, speed * rate) for joint, (angle, rate) in angles.items())
     return knee, hip
 
 

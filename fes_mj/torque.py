@@ -10,8 +10,8 @@ from __future__ import annotations
 import csv
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
-from functools import partial
+from dataclasses import dataclass, replace
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from fes_mj import kinematics
 from fes_mj.design import Design, Linkage, Rider
 from fes_mj.errors import InputError
+from fes_mj.torque_velocity import TorqueVelocity
 
 # The tricycle and rider of the moments, whatever linkage the map is applied to (paper, Section 3).
 REFERENCE = Design(
@@ -36,6 +37,7 @@ JOINTS = ("knee", "hip")
 COLUMNS = ("crank_angle_deg", "knee_Nm", "hip_Nm")
 LARGEST_MOMENT = 1e4  # N m, ten times what a strong leg can do; beyond it the unit is another one
 TABLE_SIZE = 3600  # moments are interpolated linearly on a uniform grid of 0.1 deg
+_GRID = np.arange(TABLE_SIZE + 2) * (2 * np.pi / TABLE_SIZE)  # from top dead centre; two more for rounding at the end
 
 
 @dataclass(frozen=True)
@@ -44,12 +46,17 @@ class JointMoments:
 
     crank_angle: shape (n,), rad from top dead centre, increasing within [0, 2 pi).
     knee, hip: shape (n,), N m.
+    covariance: of the curves' Fourier coefficients, knee's then hip's (fes_mj.fourier), (N m)^2, shape (98, 98);
+    None where their error is not known.
+    torque_velocity: how the moments change with joint speed; None is the paper's assumption, not at all.
     """
 
     name: str
     crank_angle: NDArray[np.float64]
     knee: NDArray[np.float64]
     hip: NDArray[np.float64]
+    covariance: NDArray[np.float64] | None = None
+    torque_velocity: TorqueVelocity | None = None
 
 
 class TorqueMap:
@@ -57,25 +64,50 @@ class TorqueMap:
 
     def __init__(self, moments: JointMoments) -> None:
         self.moments = moments
-        grid = np.arange(TABLE_SIZE + 2) * (2 * np.pi / TABLE_SIZE)
         self._tables = {
-            joint: np.interp(grid, moments.crank_angle, getattr(moments, joint), period=2 * np.pi) for joint in JOINTS
+            joint: np.interp(_GRID, moments.crank_angle, getattr(moments, joint), period=2 * np.pi) for joint in JOINTS
         }
 
     def moment(self, joint: str, angle: Any, rate: Any) -> Any:
-        """Moment in N m, any shape. angle: rad. rate: of any unit, its sign is the direction, zero is extension."""
-        return self.at_source(joint, source_angle(joint, angle, rate))
+        """Moment in N m, any shape. angle: rad. rate: rad/s, zero is extension.
+
+        Without a torque-velocity relation only the sign of the rate, the direction, counts.
+        """
+        source = source_angle(joint, angle, rate)
+        moment = self.at_source(joint, source)
+        if self.moments.torque_velocity is None:
+            return moment
+        return moment * self._speed_factor(joint, source, moment, rate)
 
     def at_source(self, joint: str, source: Any) -> Any:
-        """Moment in N m at crank angles of the reference TRT, rad from top dead centre, any shape."""
-        position = np.mod(source, 2 * np.pi) * (TABLE_SIZE / (2 * np.pi))
-        index = np.nan_to_num(position).astype(np.int64)
-        table = self._tables[joint]
-        return table[index] + (position - index) * (table[index + 1] - table[index])
+        """Moment in N m at crank angles of the reference TRT, rad from top dead centre, any shape; speed-free."""
+        return _interpolated(self._tables[joint], source)
+
+    def speed_factor(self, joint: str, angle: Any, rate: Any) -> Any:
+        """Moment at this rate (rad/s) per moment at the rate the reference TRT had there; needs the relation."""
+        source = source_angle(joint, angle, rate)
+        return self._speed_factor(joint, source, self.at_source(joint, source), rate)
+
+    def _speed_factor(self, joint: str, source: Any, moment: Any, rate: Any) -> Any:
+        relation, sign = self.moments.torque_velocity, np.sign(moment)
+        assert relation is not None
+        then = _interpolated(reference_rates()[joint], source)
+        return relation.factor(joint, sign * rate) / relation.factor(joint, sign * then)
 
     def feedback(self, joint: str) -> Callable[[float, float], float]:
         """The same map for plain floats, (angle, rate) -> moment; twenty times faster for one value at a time."""
-        return partial(scalar_map(joint, _acos_float), self._tables[joint].tolist())
+        lookup, relation = scalar_map(joint, _acos_float), self.moments.torque_velocity
+        mapped = partial(lookup, self._tables[joint].tolist())
+        if relation is None:
+            return mapped
+        then, factor = partial(lookup, reference_rates()[joint].tolist()), relation.float_factor
+
+        def moment(angle: float, rate: float) -> float:
+            measured = mapped(angle, rate)
+            sign = math.copysign(1.0, measured)
+            return measured * factor(joint, sign * rate) / factor(joint, sign * then(angle, rate))
+
+        return moment
 
     def table(self, joint: str) -> NDArray[np.float64]:
         """Moment at every step of the uniform grid of crank angles, N m, as scalar_map takes it."""
@@ -101,6 +133,20 @@ def scalar_map(
         return table[index] + (position - index) * (table[index + 1] - table[index])
 
     return compiled(moment)
+
+
+def _interpolated(table: NDArray[np.float64], source: Any) -> Any:
+    """Value of a table over the uniform grid at crank angles of the reference TRT, rad from top dead centre."""
+    position = np.mod(source, 2 * np.pi) * (TABLE_SIZE / (2 * np.pi))
+    index = np.nan_to_num(position).astype(np.int64)
+    return table[index] + (position - index) * (table[index + 1] - table[index])
+
+
+@cache
+def reference_rates() -> dict[str, NDArray[np.float64]]:
+    """Joint rates of the reference TRT at its own cadence (60.1 rpm), rad/s, over the grid of the moments."""
+    motion = kinematics.solve(REFERENCE, _GRID + TOP_DEAD_CENTRE)
+    return {joint: REFERENCE.linkage.cadence * rate for joint, (_, rate) in joint_angles(motion).items()}
 
 
 def source_angle(joint: str, angle: Any, rate: Any) -> Any:
@@ -182,14 +228,15 @@ _INVERSES = {"knee": _knee_inverse, "hip": _hip_inverse}
 
 
 def load_moments(source: str | Path = "p1p2") -> JointMoments:
-    """Joint moments of a rider group ("p1p2", "p1p3") or of a CSV file with the header COLUMNS.
+    """Joint moments of a rider group ("p1p2", "p1p3"; with covariance) or of a CSV file with the header COLUMNS.
 
     Raises InputError, naming file, line and value, for anything but at least two rows of finite numbers
     with distinct crank angles in [0, 360) deg.
     """
     if source in GROUPS:
         path = Path(__file__).parent / "data" / "moments" / f"{source}.csv"
-        return _read_moments(path, str(source))
+        with np.load(path.with_suffix(".npz")) as stored:
+            return replace(_read_moments(path, str(source)), covariance=stored["covariance"])
     return _read_moments(Path(source), Path(source).stem)
 
 

@@ -36,6 +36,29 @@ def test_static_json_has_the_promised_keys(capsys: pytest.CaptureFixture[str]) -
         assert low <= min(content[f"{joint}_deg"]) <= max(content[f"{joint}_deg"]) <= high
 
 
+def test_power_of_recovered_moments_has_a_standard_deviation(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    content = json.loads(result(capsys, "static", "d1", "--json")[1])
+    assert 0.2 < content["power_sd_W"] < 0.6
+    assert f"31.11 +- {content['power_sd_W']:.2f}" in result(capsys, "static", "d1")[1]
+    own = tmp_path / "own.csv"
+    own.write_text("crank_angle_deg,knee_Nm,hip_Nm\n0,10,0\n90,20,0\n180,0,5\n270,-10,0\n")
+    assert json.loads(result(capsys, "static", "d1", "--moments", str(own), "--json")[1])["power_sd_W"] is None
+    assert "+-" not in result(capsys, "static", "d1", "--moments", str(own))[1]
+
+
+def test_torque_velocity_is_off_until_asked_for(capsys: pytest.CaptureFixture[str]) -> None:
+    plain, hill = (
+        json.loads(result(capsys, "static", "d1", "--json", *extra)[1]) for extra in ([], ["--torque-velocity", "hill"])
+    )
+    assert (plain["torque_velocity"], hill["torque_velocity"]) == (None, "hill")
+    assert hill["power_mean_W"] < 0.85 * plain["power_mean_W"]
+    assert "relation of Hill" in result(capsys, "static", "d1", "--torque-velocity", "hill")[1]
+    code, out, _ = result(capsys, "simulate", "d1", "--torque-velocity", "hill", "--json")
+    assert (code, json.loads(out)["agrees"]) == (0, True)
+
+
 def test_simulate_json_has_the_promised_keys(capsys: pytest.CaptureFixture[str]) -> None:
     code, out, err = result(capsys, "simulate", "r1", "--group", "p1p3", "--json")
     content = json.loads(out)
@@ -121,6 +144,7 @@ def test_joint_angles_without_data_are_mentioned(capsys: pytest.CaptureFixture[s
         (["simulate"], "requires an argument"),
         (["dance"], 'Unknown command "dance"'),
         (["static", "d1", "--louder"], "Unknown option"),
+        (["static", "d1", "--torque-velocity", "katz"], 'Invalid value "katz" for --torque-velocity'),
     ],
 )
 def test_bad_input_gets_one_message_and_exit_code_2(

@@ -12,6 +12,9 @@ import pytest
 
 from fes_mj.cli import run
 from fes_mj.design_file import CATALOGUE
+from fes_mj.errors import InputError
+from fes_mj.paper.evidence import load_evidence
+from fes_mj.paper.reconstruction import reconstruct
 
 DATA = Path(__file__).parents[1] / "fes_mj" / "data"
 # Values that have broken a reader somewhere.
@@ -129,11 +132,24 @@ def _fuzz_moments(seed: int, count: int, folder: Path, capsys: pytest.CaptureFix
     return refused
 
 
+def _fuzz_evidence(seed: int, count: int, folder: Path) -> int:
+    """No command reads a user's evidence, but who edits the file deserves the same."""
+    path, messages = folder / "fuzzed.toml", []
+    for text in broken(seed, (DATA / "evidence.toml").read_text(), count):
+        path.write_text(text, encoding="utf-8", errors="surrogatepass")
+        try:
+            reconstruct(load_evidence(path))
+        except InputError as error:
+            messages.append(str(error))
+    assert max(map(len, messages)) < 4000
+    return len(messages)
+
+
 def _fuzz_flags(seed: int, count: int, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Commands that stop at the first bad flag: nothing may run, nothing may be written."""
     source = random.Random(seed)
     flags = {
-        "static": ("--cadence", "--group", "--moments", "--dims", "--curves", "--json"),
+        "static": ("--cadence", "--group", "--moments", "--dims", "--torque-velocity", "--curves", "--json"),
         "simulate": ("--cadence", "--turns", "--legs", "--timestep", "--out", "--render", "--nonsense"),
         "export": ("-o", "--out", "--variant", "--cadence", "--dims"),
         "validate": ("--report", "--junit", "--video", "--group", "--cadence", "--moments"),
@@ -158,6 +174,10 @@ def test_broken_design_files(tmp_path: Path, capsys: pytest.CaptureFixture[str])
 
 def test_broken_moments_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert _fuzz_moments(2, 250, tmp_path, capsys) > 120
+
+
+def test_broken_evidence(tmp_path: Path) -> None:
+    assert _fuzz_evidence(5, 60, tmp_path) > 30
 
 
 def test_broken_flags(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
@@ -217,5 +237,6 @@ def test_thousands_of_broken_inputs(
     folders = [tmp_path_factory.mktemp(name) for name in ("designs", "moments", "flags")]
     _fuzz_designs(1000, 1000, folders[0], capsys)
     _fuzz_moments(2000, 2500, folders[1], capsys)
+    _fuzz_evidence(4000, 1000, folders[1])
     monkeypatch.chdir(folders[2])
     _fuzz_flags(3000, 4000, folders[2], capsys)

@@ -46,7 +46,7 @@ class Row(NamedTuple):
 
 def problem(target: str, manufacturable: bool, caution: float = 0.0) -> Problem:
     """Joint speeds and gear ratio no larger than the printed design's own; the paper's Grashof condition or ours."""
-    design, table = load_design(target), uncertain_table(TARGETS[target])
+    design, table = load_design(target), uncertain_table(load_moments(TARGETS[target]))
     limits = replace(load_limits(), gear_ratio_max=design.linkage.gear_ratio + 1e-9)
     if not manufacturable:
         limits = replace(limits, grashof_min=0.0)

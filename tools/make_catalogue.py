@@ -1,23 +1,21 @@
 """Write fes_mj/data/designs/identified from the printed dimensions and Table 1's joint ranges."""
 
-import math
 from dataclasses import replace
 
 from fes_mj.design_file import design_toml, load_design
 from fes_mj.files import write_text
 from fes_mj.paper.identification import identify, joint_ranges, rounded
-from fes_mj.paper.printed import DATA, table1
+from fes_mj.paper.printed import DATA, SIX_BARS, table1
 from fes_mj.torque import REFERENCE
 
-SEAT_ANGLE, COUPLER_ANGLE = math.radians(30), math.radians(90)
 FOLDER = DATA / "designs" / "identified"
 
 
 def main() -> None:
     trt = "TRT as described in Section 3 of Lanese et al. (2022).\nWritten by tools/make_catalogue.py."
     write_text(FOLDER / "trt.toml", design_toml(REFERENCE, trt))
-    for name in ("r1", "r2", "d1", "d2"):
-        result = identify(load_design(name, "printed"), table1()[name], SEAT_ANGLE, COUPLER_ANGLE)
+    for name in SIX_BARS:
+        result = identify(load_design(name, "printed"), table1()[name])
         if not result.found:
             raise SystemExit(f"{name}: no dimensions inside the rounding of Table 2 satisfy Table 1")
         design = replace(result.design, linkage=rounded(result.design.linkage))

@@ -31,6 +31,7 @@ _COMMANDS = {
     "export": "Write the MJCF model of a design, for other tools.",
     "validate": "Run every check of the harness on designs, one verdict each.",
     "explain": "What a check guards against and what usually breaks it.",
+    "reproduce": "Compute the paper's tables and figures and write them beside our own.",
     "view": "Watch a design run in MuJoCo's interactive viewer.",
 }
 for _command, _help in _COMMANDS.items():

@@ -189,7 +189,7 @@ def _problem(
     from fes_mj.optimization.problem_file import DEFAULT, load_limits
 
     limits = load_limits(file or DEFAULT)
-    table = uncertain_table(moments.name) if caution else WorkTable.of(moments)
+    table = uncertain_table(moments) if caution else WorkTable.of(moments)
     # the rider, seat and coupler angle of the start, or of the printed six-bars
     template = start or load_design("r1" if kind == "crt" else "d1")
     own = joint_speeds(rival, table)

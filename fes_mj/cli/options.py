@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Literal, NamedTuple
 
@@ -13,6 +13,7 @@ from fes_mj.design import Design
 from fes_mj.design_file import load_design
 from fes_mj.errors import InputError
 from fes_mj.torque import JointMoments, load_moments
+from fes_mj.torque_velocity import load_torque_velocity
 
 HIGHEST_CADENCE = 200.0  # rpm; up to here the default step keeps every check of the catalogue inside its limit
 LOWEST_CADENCE = 1.0  # rpm; a turn of a minute
@@ -41,12 +42,15 @@ class LoadOptions:
         Crank speed in rpm; by default the one at which the tricycle does 5.71 km/h.
     dims
         Dimensions of a catalogued design: as identified, or as the paper prints them.
+    torque_velocity
+        Let joint moments change with joint speed, by Hill's relation; by default they do not, as in the paper.
     """
 
     group: Literal["p1p2", "p1p3"] | None = None
     moments: Path | None = None
     cadence: float | None = None
     dims: Literal["identified", "printed"] = "identified"
+    torque_velocity: Literal["hill"] | None = None
 
     def load(self, design: str) -> Loaded:
         """Load everything the options name. Raises InputError for what cannot be used."""
@@ -54,6 +58,8 @@ class LoadOptions:
             raise InputError("--group and --moments exclude each other; a file of moments is a group of its own")
         loaded = load_design(design, self.dims)
         moments = load_moments(self.moments or self.group or "p1p2")
+        if self.torque_velocity:
+            moments = replace(moments, torque_velocity=load_torque_velocity(self.torque_velocity))
         return Loaded(loaded, moments, crank_speed(self.cadence, loaded))
 
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-import math
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
@@ -14,6 +12,8 @@ from rich.console import Console
 from rich.progress import Progress
 from rich.table import Table
 
+from fes_mj.files import json_text as json_text
+
 Item = TypeVar("Item")
 
 output = Console(highlight=False)
@@ -23,23 +23,6 @@ errors = Console(stderr=True, highlight=False)
 def print_json(content: dict[str, Any]) -> None:
     """Print one JSON object; numbers that JSON lacks (NaN, infinity) become null."""
     sys.stdout.write(json_text(content))
-
-
-def json_text(content: dict[str, Any]) -> str:
-    """The object as indented JSON text."""
-    return json.dumps(_plain(content), indent=2, allow_nan=False) + "\n"
-
-
-def _plain(value: Any) -> Any:
-    if hasattr(value, "tolist"):
-        value = value.tolist()
-    if isinstance(value, dict):
-        return {key: _plain(item) for key, item in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [_plain(item) for item in value]
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
-    return value
 
 
 def print_table(title: str, columns: Sequence[str], rows: Iterable[Sequence[str]]) -> None:

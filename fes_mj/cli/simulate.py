@@ -10,7 +10,7 @@ import numpy as np
 
 from fes_mj.cli.options import Loaded, RunOptions
 from fes_mj.cli.output import json_text, number, output, print_json, print_table, verdict
-from fes_mj.cli.static import heading, print_notes, rows, summary
+from fes_mj.cli.static import heading, print_notes, rows, summary, with_error
 from fes_mj.errors import InputError
 from fes_mj.files import require_folder, require_writable, write_text
 
@@ -138,7 +138,7 @@ def _print(result: CrossCheck, loaded: Loaded, verbose: bool) -> None:
     run = result.simulation
     knee, hip = _range(run.joint_angle, "knee"), _range(run.joint_angle, "hip")
     dynamic = (
-        f"{run.power_mean:.3f}",
+        with_error(run.power_mean, result.static.power_sd),  # the mean is the same functional of the moments
         f"{2 * np.pi * run.power_mean / run.cadence:.3f}",
         f"{knee[0]:.1f} to {knee[1]:.1f}",
         f"{hip[0]:.1f} to {hip[1]:.1f}",

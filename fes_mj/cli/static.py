@@ -45,8 +45,10 @@ def summary(result: QuasiStatic) -> dict[str, Any]:
     return {
         "design": result.design.name,
         "group": result.moments.name,
+        "torque_velocity": relation.name if (relation := result.moments.torque_velocity) else None,
         "cadence_rpm": result.cadence * 30 / math.pi,
         "power_mean_W": result.power_mean,
+        "power_sd_W": result.power_sd,
         "work_per_turn_J": result.work_per_turn,
         "knee_range_deg": _range(result.knee_angle),
         "hip_range_deg": _range(result.hip_angle),
@@ -59,18 +61,25 @@ def heading(result: QuasiStatic, legs: int = 1) -> str:
     kind = result.design.linkage.architecture.title
     rpm = result.cadence * 30 / math.pi
     which = "one leg" if legs == 1 else "two legs, values of one"
-    return f"{result.design.name}, {kind}; {result.moments.name}; {rpm:.1f} rpm; {which}"
+    relation = result.moments.torque_velocity
+    faster = f" with the torque-velocity relation of {relation.name.title()}" if relation else ""
+    return f"{result.design.name}, {kind}; {result.moments.name}{faster}; {rpm:.1f} rpm; {which}"
 
 
 def rows(result: QuasiStatic) -> list[tuple[str, str]]:
     """Quantity and quasi-static value, as text."""
     knee, hip = _range(result.knee_angle), _range(result.hip_angle)
     return [
-        ("mean crank power, W", f"{result.power_mean:.3f}"),
+        ("mean crank power, W", with_error(result.power_mean, result.power_sd)),
         ("work per turn, J", f"{result.work_per_turn:.3f}"),
         ("knee angle, deg", f"{knee[0]:.1f} to {knee[1]:.1f}"),
         ("hip angle, deg", f"{hip[0]:.1f} to {hip[1]:.1f}"),
     ]
+
+
+def with_error(power: float, deviation: float | None) -> str:
+    """A power in W, with its standard deviation where that is known."""
+    return f"{power:.3f}" if deviation is None else f"{power:.2f} +- {deviation:.2f}"
 
 
 def notes(result: QuasiStatic) -> list[str]:

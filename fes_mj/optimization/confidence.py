@@ -6,16 +6,15 @@ of their difference. An optimiser seeks out what the evidence leaves open, so it
 
 from __future__ import annotations
 
-from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from fes_mj.errors import InputError
+from fes_mj.fourier import fourier
 from fes_mj.optimization.cycles import WorkTable
-from fes_mj.paper.evidence import load_evidence
-from fes_mj.paper.reconstruction import Hyperparameters, Posterior, choose_hyperparameters, condition, fourier
-from fes_mj.torque import JOINTS
+from fes_mj.torque import JOINTS, JointMoments, TorqueMap
 
 _NEGLIGIBLE = 1e-9  # part of the largest variance; directions below it are rounding
 
@@ -32,34 +31,25 @@ class Gain(NamedTuple):
         return self.mean > self.deviation
 
 
-@cache
-def posterior(group: str) -> Posterior:
-    """Posterior of a group's recovered joint moments."""
-    rows = load_evidence()
-    return condition([row for row in rows if row.group == group], _hyperparameters())
+def uncertain_table(moments: JointMoments) -> WorkTable:
+    """Table whose first set of moments is the given one, the others its deviations along independent directions.
 
-
-@cache
-def _hyperparameters() -> Hyperparameters:
-    return choose_hyperparameters(load_evidence())
-
-
-def uncertain_table(group: str) -> WorkTable:
-    """Table whose first set of moments is the posterior mean, the others its deviations.
-
-    A power p, shape (sets,), has the mean p[0] and the standard deviation |p[1:]|.
+    A power p, shape (sets,), has the mean p[0] and the standard deviation |p[1:]|. Raises InputError for moments
+    whose covariance is not known.
     """
-    given = posterior(group)
-    variance, directions = np.linalg.eigh(given.covariance)
+    if moments.covariance is None:
+        raise InputError(
+            f"{moments.name}: nothing is known of the error of these moments; only a rider group's have one"
+        )
+    variance, directions = np.linalg.eigh(moments.covariance)
     large = variance > _NEGLIGIBLE * variance[-1]
-    sets = np.column_stack([given.mean, directions[:, large] * np.sqrt(variance[large])])
-    size = len(sets) // len(JOINTS)
-    coefficients = {joint: sets[start : start + size] for joint, start in zip(JOINTS, (0, size), strict=True)}
+    deviations = dict(zip(JOINTS, np.split(directions[:, large] * np.sqrt(variance[large]), len(JOINTS)), strict=True))
+    torque_map = TorqueMap(moments)
 
-    def moments(joint: str, angle: Any) -> NDArray[np.float64]:
-        return fourier(angle) @ coefficients[joint]
+    def sets(joint: str, angle: Any) -> NDArray[np.float64]:
+        return np.column_stack([torque_map.at_source(joint, angle), fourier(angle) @ deviations[joint]])
 
-    return WorkTable(moments)
+    return WorkTable(sets)
 
 
 def gain(power: NDArray[np.float64], baseline: NDArray[np.float64]) -> Gain:

@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fes_mj.design import Design
-from fes_mj.optimization.confidence import Gain, gain, uncertain_table
+from fes_mj.optimization.confidence import Gain
 from fes_mj.optimization.cycles import WorkTable, cycles, joint_speeds
 from fes_mj.optimization.tolerance import Tolerance, to_manufacturing, to_rider
-from fes_mj.torque import GROUPS, JointMoments
+from fes_mj.statics import quasi_static
+from fes_mj.torque import JointMoments
+from fes_mj.uncertainty import difference_sd
 
 if TYPE_CHECKING:
     from fes_mj.crosscheck import CrossCheck
@@ -49,7 +51,7 @@ def assess(design: Design, rival: Design, moments: JointMoments, seed: int = 0) 
         check=_refined(design, moments),
         speeds=joint_speeds(design, table),
         reversals={joint: int(count[0]) for joint, count in turn.reversals.items()},
-        gain=gain_over(design, rival, moments.name) if moments.name in GROUPS else None,
+        gain=gain_over(design, rival, moments),
         manufacturing=to_manufacturing(design, table, random),
         rider=to_rider(design, table, random),
     )
@@ -66,8 +68,8 @@ def _refined(design: Design, moments: JointMoments) -> CrossCheck:
     return check
 
 
-def gain_over(design: Design, rival: Design, group: str) -> Gain:
-    """Power gained over a rival, each at its own cadence, under the recovered moments of a group."""
-    table = uncertain_table(group)
-    power, baseline = (cycles(each, table).work[0] * each.linkage.cadence / (2 * np.pi) for each in (design, rival))
-    return gain(power, baseline)
+def gain_over(design: Design, rival: Design, moments: JointMoments) -> Gain | None:
+    """Power gained over a rival, each at its own cadence; None for moments whose error is not known."""
+    own, other = quasi_static(design, moments), quasi_static(rival, moments)
+    deviation = difference_sd(own, other)
+    return None if deviation is None else Gain(own.power_mean - other.power_mean, deviation)

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -12,16 +11,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fes_mj import kinematics
-from fes_mj.design import Design
 from fes_mj.design_file import CATALOGUE, load_design
 from fes_mj.errors import InputError
+from fes_mj.fourier import fourier
 from fes_mj.paper.printed import DATA
 from fes_mj.torque import GROUPS, JOINTS, REFERENCE, TOP_DEAD_CENTRE, joint_angles, source_angle
-
-Basis = Callable[[Any], NDArray[np.float64]]  # crank angle from top dead centre -> features, last axis
+from fes_mj.uncertainty import power_weights
 
 UNITS = {"power": "W", "crank_power": "W", "moment": "N m", "work_share": "1"}
 DIRECTIONS = {"extension": 1.0, "flexion": -1.0, "both": 0.0}
+LARGEST_NUMBER = 1e6  # in any unit here; beyond it something else was meant
 _ANGLES = np.linspace(0, 2 * np.pi, 1440, endpoint=False)
 
 
@@ -47,49 +46,73 @@ def load_evidence(path: Path = DATA / "evidence.toml") -> list[Evidence]:
     """All rows. Raises InputError naming the row and the key for anything that is not evidence."""
     try:
         content = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError, RecursionError) as error:
         raise InputError(f"{path}: cannot read the evidence: {error}") from None
-    rows = []
-    for number, row in enumerate(content.get("evidence", []), 1):
+    tables = content.get("evidence", [])
+    sources = content.get("source", {})
+    if not isinstance(tables, list) or not all(isinstance(table, dict) for table in [sources, *tables]):
+        raise InputError(f"{path}: the evidence must be tables [[evidence]], its sources a table [source]")
+    rows: list[Evidence] = []
+    for number, table in enumerate(tables, 1):
         try:
-            rows.append(Evidence(**row))
+            rows.append(Evidence(**table))
         except TypeError as error:
-            raise InputError(f"{path}: evidence row {number} ({row.get('name')}): {error}") from None
-        _check(path, rows[-1], content.get("source", {}))
+            raise InputError(f"{path}: evidence row {number} ({table.get('name')}): {error}") from None
+        _check(path, rows[-1], sources)
+        if rows[-1].name in {row.name for row in rows[:-1]}:
+            raise InputError(f"{path}: evidence {rows[-1].name!r} is given twice; give each row a name of its own")
+    if missing := [group for group in GROUPS if group not in {row.group for row in rows}]:
+        raise InputError(f"{path}: there is no evidence for group {missing[0]!r}; both groups need some")
     return rows
 
 
 def _check(path: Path, row: Evidence, sources: dict[str, str]) -> None:
+    for field in fields(row):
+        if field.type == "str" and not isinstance(getattr(row, field.name), str):
+            shown = str(getattr(row, field.name))[:40]
+            raise InputError(f"{path}: evidence {str(row.name)[:40]!r}: {field.name} is {shown!r}; it must be a text")
     allowed: dict[str, tuple[Any, Any]] = {
         "group": (row.group, GROUPS),
         "quantity": (row.quantity, tuple(UNITS)),
         "unit": (row.unit, (UNITS.get(row.quantity),)),
         "source": (row.source, tuple(sources)),
     }
+    positive = {"error": row.error}
     if row.quantity == "power":
         allowed["design"] = (row.design, CATALOGUE)
     if row.quantity in ("moment", "work_share"):
         allowed["joint"] = (row.joint, JOINTS)
         allowed["direction"] = (row.direction, tuple(DIRECTIONS)[: 2 if row.quantity == "moment" else 3])
+    if row.quantity == "moment":
+        positive["angle_deg"] = row.angle_deg
+    if row.quantity in ("crank_power", "work_share"):
+        positive["leg_m"] = row.leg_m
     for key, (value, choices) in allowed.items():
         if value not in choices:
-            raise InputError(f"{path}: evidence {row.name!r}: {key} is {value!r}; it must be one of {choices}")
-    if not (np.isfinite(row.value) and np.isfinite(row.error) and row.error > 0):
-        raise InputError(
-            f"{path}: evidence {row.name!r}: value {row.value}, error {row.error}; the error must be above 0"
-        )
+            raise InputError(
+                f"{path}: evidence {row.name!r}: {key} is {str(value)[:40]!r}; it must be one of {choices}"
+            )
+    for key, number in {"value": row.value, **positive}.items():
+        if isinstance(number, bool) or not isinstance(number, int | float) or not abs(number) <= LARGEST_NUMBER:
+            raise InputError(
+                f"{path}: evidence {row.name!r}: {key} is {str(number)[:40]!r}; "
+                f"it must be a finite number, at most {LARGEST_NUMBER:g}"
+            )
+        if key in positive and number <= 0:
+            raise InputError(f"{path}: evidence {row.name!r}: {key} is {number}; it must be above 0")
 
 
-def functional(row: Evidence, basis: Basis) -> tuple[NDArray[np.float64], float, float]:
-    """The row as a linear measurement: weights on the knee's then the hip's coefficients, value, error."""
+def functional(row: Evidence) -> tuple[NDArray[np.float64], float, float]:
+    """The row as a linear measurement: weights on the Fourier coefficients, shape (98,), value, error."""
     if row.quantity == "power":
-        return power_weights(load_design(row.design), basis), row.value, row.error
+        design = load_design(row.design)
+        return power_weights(kinematics.solve(design, _ANGLES), design.linkage.cadence), row.value, row.error
     if row.quantity == "moment":
         sign = DIRECTIONS[row.direction]
-        features = basis(source_angle(row.joint, np.radians(row.angle_deg), sign))
+        features = fourier(source_angle(row.joint, np.radians(row.angle_deg), sign))
         weights = [features if joint == row.joint else 0 * features for joint in JOINTS]
         return np.concatenate(weights), row.value, row.error
-    shares = _crank_powers(row.leg_m, basis)
+    shares = _crank_powers(row.leg_m)
     total = np.concatenate([shares["knee", "both"], shares["hip", "both"]])
     if row.quantity == "crank_power":
         return total, row.value, row.error
@@ -98,21 +121,10 @@ def functional(row: Evidence, basis: Basis) -> tuple[NDArray[np.float64], float,
     return np.concatenate(part) - row.value * total, 0.0, row.error * 15.0
 
 
-def power_weights(design: Design, basis: Basis) -> NDArray[np.float64]:
-    """Mean crank power of one leg through the torque map, W per coefficient, knee's then hip's."""
-    motion = kinematics.solve(design, _ANGLES)
-    return design.linkage.cadence * np.concatenate(
-        [
-            (basis(source_angle(joint, angle, rate)) * rate[:, None]).mean(axis=0)
-            for joint, (angle, rate) in joint_angles(motion).items()
-        ]
-    )
-
-
-def _crank_powers(leg: float, basis: Basis) -> dict[tuple[str, str], NDArray[np.float64]]:
+def _crank_powers(leg: float) -> dict[tuple[str, str], NDArray[np.float64]]:
     """Power of each joint in each direction in the TRT, legs of `leg` m, moments read at the crank angle itself."""
     design = replace(REFERENCE, rider=replace(REFERENCE.rider, thigh=leg, shank=leg))
-    features = basis(_ANGLES - TOP_DEAD_CENTRE)
+    features = fourier(_ANGLES - TOP_DEAD_CENTRE)
     powers = {}
     for joint, (_, rate) in joint_angles(kinematics.solve(design, _ANGLES)).items():
         for name, sign in DIRECTIONS.items():

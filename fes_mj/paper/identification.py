@@ -11,13 +11,14 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import minimize
+from scipy.optimize import least_squares, minimize
 
 from fes_mj import kinematics
 from fes_mj.design import Design, Linkage
 from fes_mj.paper.printed import Table1Row
 
 ROUNDING = 0.005  # m, Table 2 is rounded to 1 cm
+SEAT_ANGLE, COUPLER_ANGLE = np.radians(30.0), np.radians(90.0)  # in no table of the paper: what fits (readings.py)
 RANGE_TOLERANCE = 0.49  # deg, Table 1 is rounded to 1 deg; a little inside, so that rounding the result is safe
 _STARTS = 6
 _SEED = 2022
@@ -38,7 +39,9 @@ class Identification:
         return float(np.sum((self.shift / ROUNDING) ** 2))
 
 
-def identify(printed: Design, target: Table1Row, seat_angle: float, coupler_angle: float = np.pi / 2) -> Identification:
+def identify(
+    printed: Design, target: Table1Row, seat_angle: float = SEAT_ANGLE, coupler_angle: float = COUPLER_ANGLE
+) -> Identification:
     """Identify one six-bar for a seat angle and a coupler angle (rad)."""
     base = replace(printed.linkage, seat_angle=seat_angle, coupler_angle=coupler_angle)
     wanted = np.array([*target.knee_range, *target.hip_range])
@@ -69,6 +72,26 @@ def identify(printed: Design, target: Table1Row, seat_angle: float, coupler_angl
     assert best is not None
     design = candidate(best.x)
     return Identification(design, ROUNDING * best.x, joint_ranges(design), found)
+
+
+def range_misfit(printed: Design, target: Table1Row, seat_angle: float, coupler_angle: float) -> float:
+    """Largest error of a joint range, deg, at the least-squares fit of Table 1 inside the rounding box.
+
+    NaN if no start inside the box turns; then nothing can be said.
+    """
+    base = replace(printed.linkage, seat_angle=seat_angle, coupler_angle=coupler_angle)
+    wanted = np.array([*target.knee_range, *target.hip_range])
+
+    def error(shift: NDArray[np.float64]) -> NDArray[np.float64]:
+        return joint_ranges(replace(printed, linkage=unpack(base, pack(base) + ROUNDING * shift))) - wanted
+
+    random = np.random.default_rng(_SEED)
+    starts = [start for start in random.uniform(-0.9, 0.9, (60, 9)) if np.all(np.isfinite(error(start)))]
+    fits = [
+        least_squares(lambda shift: np.nan_to_num(error(shift), nan=180.0), start, bounds=(-1, 1), max_nfev=100)
+        for start in starts[:_STARTS]
+    ]
+    return float(np.abs(min(fits, key=lambda fit: fit.cost).fun).max()) if fits else float("nan")
 
 
 def joint_ranges(design: Design, crank_angle: NDArray[np.float64] = kinematics.FULL_TURN) -> NDArray[np.float64]:

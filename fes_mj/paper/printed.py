@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 DATA = Path(__file__).parents[1] / "data"
+SIX_BARS = ("r1", "r2", "d1", "d2")
 
 
 class Table1Row(NamedTuple):

@@ -8,26 +8,27 @@ a mean and a covariance of 2 x 49 coefficients, and the variance of any power is
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize
 from scipy.special import ive
 
+from fes_mj.errors import InputError
+from fes_mj.fourier import HARMONICS, TERMS, fourier
 from fes_mj.paper.evidence import Evidence, functional
 from fes_mj.torque import GROUPS, JOINTS, JointMoments
+from fes_mj.uncertainty import standard_deviation
 
-HARMONICS = 24  # beyond the 24th a kernel of length 0.5 has less than 1e-12 of its variance
 # A mean curve over a group of riders is smooth. The marginal likelihood hardly tells lengths apart between 0.25 and 1.2
-# (1 of log-likelihood), so shorter ones, which wiggle within 30 deg of crank angle, are excluded.
+# (1 of log-likelihood), so shorter ones, which wiggle within 30 deg of crank angle, are excluded, and of its two equal
+# maxima (0.85, and 0.5 at the bound, higher by 0.1) the smooth one is taken.
 SHORTEST_LENGTH, LONGEST_LENGTH = 0.5, 2.0
-
-
-def fourier(crank_angle: Any) -> NDArray[np.float64]:
-    """1, cos k a, sin k a along a new last axis of size 49; crank_angle in rad from top dead centre."""
-    phase = np.asarray(crank_angle)[..., None] * np.arange(1, HARMONICS + 1)
-    return np.concatenate([np.ones((*phase.shape[:-1], 1)), np.cos(phase), np.sin(phase)], axis=-1)
+# The text's highest moment is 20 N m. Without a limit, curves of 200 N m would swallow any misprint in the evidence.
+SMALLEST_AMPLITUDE, LARGEST_AMPLITUDE = 1.0, 40.0  # N m
+# A row further from what the others predict contradicts them. The residual, in the row's errors, is never larger.
+LARGEST_MISS = 5.0  # standard deviations
 
 
 @dataclass(frozen=True)
@@ -58,20 +59,55 @@ class Posterior:
 
     def predict(self, weights: NDArray[np.float64]) -> tuple[float, float]:
         """Mean and standard deviation of a linear functional with the given weights, shape (98,)."""
-        return float(weights @ self.mean), float(np.sqrt(weights @ self.covariance @ weights))
+        return float(weights @ self.mean), standard_deviation(weights, self.covariance)
 
     def curve(self, joint: str, crank_angle: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Mean and standard deviation of a joint's moment, N m, at crank angles from top dead centre, rad."""
-        features, start = fourier(crank_angle), JOINTS.index(joint) * (2 * HARMONICS + 1)
-        part = slice(start, start + 2 * HARMONICS + 1)
+        features, start = fourier(crank_angle), JOINTS.index(joint) * TERMS
+        part = slice(start, start + TERMS)
         variance = np.einsum("...i,ij,...j->...", features, self.covariance[part, part], features)
         return features @ self.mean[part], np.sqrt(variance)
 
     def moments(self, name: str) -> JointMoments:
-        """The mean curves at every degree of crank angle."""
+        """The mean curves at every degree of crank angle, with their covariance."""
         degrees = np.arange(360.0)
         knee, hip = (self.curve(joint, np.radians(degrees))[0] for joint in JOINTS)
-        return JointMoments(name, np.radians(degrees), knee, hip)
+        return JointMoments(name, np.radians(degrees), knee, hip, self.covariance)
+
+
+class Reconstruction(NamedTuple):
+    """Hyperparameters of both groups together, and the posterior of each."""
+
+    hyperparameters: Hyperparameters
+    posteriors: dict[str, Posterior]
+
+
+def reconstruct(evidence: list[Evidence]) -> Reconstruction:
+    """Recover the moments of every group. Raises InputError naming the evidence that contradicts the rest."""
+    chosen = choose_hyperparameters(evidence)
+    misses: dict[str, float] = {}
+    for group in GROUPS:
+        rows = [row for row in evidence if row.group == group]
+        misses |= dict(zip([row.name for row in rows], left_out_misses(rows, chosen).tolist(), strict=True))
+    name, miss = max(misses.items(), key=lambda item: abs(item[1]))
+    if abs(miss) > LARGEST_MISS:
+        raise InputError(
+            f"evidence {name!r} contradicts the rest: it lies {abs(miss):.1f} standard deviations from what the other "
+            f"rows predict, {LARGEST_MISS:g} is allowed; correct its value, or give it the error it has"
+        )
+    posteriors = {group: condition([row for row in evidence if row.group == group], chosen) for group in GROUPS}
+    return Reconstruction(chosen, posteriors)
+
+
+def left_out_misses(rows: list[Evidence], hyperparameters: Hyperparameters) -> NDArray[np.float64]:
+    """Value less prediction from the other rows of the group, in standard deviations of both together, shape (rows,).
+
+    Never smaller than the residual in units of the row's error, whose sign it has (Rasmussen and Williams, Gaussian
+    Processes for Machine Learning, 2006, Eq. 5.12).
+    """
+    weights, values, errors = _system(rows)
+    precision = np.linalg.inv(_evidence_covariance(weights, errors, hyperparameters))
+    return precision @ values / np.sqrt(np.diag(precision))
 
 
 def condition(rows: list[Evidence], hyperparameters: Hyperparameters) -> Posterior:
@@ -80,21 +116,21 @@ def condition(rows: list[Evidence], hyperparameters: Hyperparameters) -> Posteri
 
 
 def choose_hyperparameters(rows: list[Evidence]) -> Hyperparameters:
-    """Maximum of the marginal likelihood of all groups together, one length and one amplitude."""
+    """Smooth maximum of the marginal likelihood of all groups together, one length and one amplitude."""
     systems = [_system([row for row in rows if row.group == group]) for group in GROUPS]
 
     def cost(logs: NDArray[np.float64]) -> float:
         hyperparameters = Hyperparameters(*np.exp(logs))
         return -sum(_condition(*system, hyperparameters).log_likelihood for system in systems)
 
-    bounds = [np.log((SHORTEST_LENGTH, LONGEST_LENGTH)), np.log((1.0, 200.0))]
+    bounds = [np.log((SHORTEST_LENGTH, LONGEST_LENGTH)), np.log((SMALLEST_AMPLITUDE, LARGEST_AMPLITUDE))]
     best = minimize(cost, np.log([1.0, 13.0]), method="L-BFGS-B", bounds=bounds)
     return Hyperparameters(*(float(value) for value in np.exp(best.x)))
 
 
 def _system(rows: list[Evidence]) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """Weights (rows, 98), values and errors (rows,) of the evidence."""
-    weights, values, errors = zip(*(functional(row, fourier) for row in rows), strict=True)
+    weights, values, errors = zip(*(functional(row) for row in rows), strict=True)
     return np.array(weights), np.array(values), np.array(errors)
 
 
@@ -106,7 +142,14 @@ def _condition(
 ) -> Posterior:
     prior = hyperparameters.prior_variance()
     spread = weights * prior
-    total = spread @ weights.T + np.diag(errors**2)
+    total = _evidence_covariance(weights, errors, hyperparameters)
     gain = np.linalg.solve(total, spread).T
     log_likelihood = -0.5 * (values @ np.linalg.solve(total, values) + np.linalg.slogdet(2 * np.pi * total)[1])
     return Posterior(gain @ values, np.diag(prior) - gain @ spread, float(log_likelihood))
+
+
+def _evidence_covariance(
+    weights: NDArray[np.float64], errors: NDArray[np.float64], hyperparameters: Hyperparameters
+) -> NDArray[np.float64]:
+    """Of the evidence before it is seen: by the curves' prior and by its own errors, shape (rows, rows)."""
+    return (weights * hyperparameters.prior_variance()) @ weights.T + np.diag(errors**2)

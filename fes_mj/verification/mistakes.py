@@ -113,7 +113,7 @@ def without_lever(original: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def by_crank_angle(_: Any) -> Callable[..., Any]:
-    def joint_moments(motion: Motion, moments: Any) -> tuple[Any, Any]:
+    def joint_moments(motion: Motion, moments: Any, cadence: Any = None) -> tuple[Any, Any]:
         angle = np.asarray(motion.crank_angle) - TOP_DEAD_CENTRE
         knee, hip = (np.interp(angle, moments.crank_angle, m, period=2 * np.pi) for m in (moments.knee, moments.hip))
         return knee, hip

@@ -27,7 +27,8 @@ def map_checks(case: Case) -> list[Check]:
     torque_map = TorqueMap(case.moments)
     motion = kinematics.solve(case.design, np.linspace(0, 2 * np.pi, 360, endpoint=False))
     spread = 0.0
-    for joint, (angle, rate) in joint_angles(motion).items():
+    for joint, (angle, coefficient) in joint_angles(motion).items():
+        rate = case.cadence * coefficient
         scalar, array = torque_map.feedback(joint), torque_map.moment(joint, angle, rate)
         values = [scalar(*pair) for pair in zip(angle.tolist(), rate.tolist(), strict=True)]
         spread = max(spread, float(np.abs(values - array).max()))
@@ -41,7 +42,8 @@ def map_error(case: Case) -> float:
     error = 0.0
     for joint, (angle, rate) in joint_angles(motion).items():
         given = np.interp(after, case.moments.crank_angle, getattr(case.moments, joint), period=2 * np.pi)
-        error = max(error, float(np.abs(torque_map.moment(joint, angle, rate) - given).max()))
+        moment = torque_map.moment(joint, angle, REFERENCE.linkage.cadence * rate)
+        error = max(error, float(np.abs(moment - given).max()))
     return error
 
 

@@ -33,7 +33,7 @@ def exact_curves(case: Case, crank_angle: Any = None) -> dict[str, Curves]:
     """
     angle = np.linspace(0, 2 * np.pi, POINTS, endpoint=False) if crank_angle is None else crank_angle
     motion = kinematics.solve(case.design, angle)
-    knee, hip = joint_moments(motion, case.moments)
+    knee, hip = joint_moments(motion, case.moments, case.cadence)
     loads = body_loads(motion, case.cadence)
     return {
         "massless": {

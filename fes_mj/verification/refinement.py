@@ -134,7 +134,7 @@ def _work(run: Simulation) -> float:
     """
     overrun = float(run.crank_speed.sum() * run.timestep) - 2 * math.pi * run.turns
     motion = kinematics.solve(run.design, run.crank_angle[:1])
-    beyond = float(virtual_work(motion, *joint_moments(motion, run.moments))[0]) * overrun
+    beyond = float(virtual_work(motion, *joint_moments(motion, run.moments, run.cadence))[0]) * overrun
     energy = run.energy
     return (energy.crank_work + energy.kinetic + energy.potential - beyond) / run.turns
 

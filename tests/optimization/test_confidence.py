@@ -1,39 +1,41 @@
-"""Error bars of power differences, against the posterior used directly."""
+"""Error bars of power differences, against the quadratic form in the covariance of the moments."""
 
 import numpy as np
 import pytest
 
 import fes_mj
-from fes_mj.optimization.confidence import gain, posterior, uncertain_table
+from fes_mj.errors import InputError
+from fes_mj.optimization.confidence import gain, uncertain_table
 from fes_mj.optimization.cycles import cycles
 from fes_mj.optimization.optimize import optimize
 from fes_mj.optimization.problem import Problem
-from fes_mj.optimization.winner import gain_over
-from fes_mj.paper.evidence import power_weights
-from fes_mj.paper.reconstruction import fourier
+from fes_mj.uncertainty import difference_sd
 from tests.optimization.test_problem import problem_of
 
 GROUPS = ("p1p2", "p1p3")
 
 
+def powers(design: fes_mj.Design, group: str) -> np.ndarray:
+    """Mean power and its deviations, W, by the table."""
+    table = uncertain_table(fes_mj.load_moments(group))
+    return cycles(design, table).work[0] * design.linkage.cadence / (2 * np.pi)
+
+
 @pytest.mark.parametrize("group", GROUPS)
-def test_mean_and_deviation_are_those_of_the_posterior(design: fes_mj.Design, group: str) -> None:
-    power = cycles(design, uncertain_table(group)).work[0] * design.linkage.cadence / (2 * np.pi)
-    mean, deviation = posterior(group).predict(power_weights(design, fourier))
-    assert power[0] == pytest.approx(mean, rel=1e-4)
-    assert np.linalg.norm(power[1:]) == pytest.approx(deviation, rel=1e-3)
+def test_mean_and_deviation_are_those_of_statics(design: fes_mj.Design, group: str) -> None:
+    static, power = fes_mj.quasi_static(design, fes_mj.load_moments(group)), powers(design, group)
+    assert power[0] == pytest.approx(static.power_mean, rel=1e-4)
+    assert np.linalg.norm(power[1:]) == pytest.approx(static.power_sd, rel=1e-3)
 
 
 @pytest.mark.parametrize("group", GROUPS)
 def test_the_error_of_a_gain_knows_that_powers_are_correlated(group: str) -> None:
-    better, worse = fes_mj.load_design("d2"), fes_mj.load_design("d1")
-    found = gain_over(better, worse, group)
-    weights = power_weights(better, fourier) - power_weights(worse, fourier)
-    mean, deviation = posterior(group).predict(weights)
-    assert found.mean == pytest.approx(mean, rel=1e-3)
-    assert found.deviation == pytest.approx(deviation, rel=1e-2)
-    alone = [posterior(group).predict(power_weights(each, fourier))[1] for each in (better, worse)]
-    assert abs(found.deviation - np.hypot(*alone)) > 0.01 * found.deviation
+    better, worse = (fes_mj.quasi_static(fes_mj.load_design(name), fes_mj.load_moments(group)) for name in ("d2", "d1"))
+    found = gain(powers(better.design, group), powers(worse.design, group))
+    assert found.mean == pytest.approx(better.power_mean - worse.power_mean, rel=1e-3)
+    assert found.deviation == pytest.approx(difference_sd(better, worse), rel=1e-2)
+    uncorrelated = np.hypot(better.power_sd, worse.power_sd)
+    assert abs(found.deviation - uncorrelated) > 0.01 * found.deviation
 
 
 def test_a_gain_over_oneself_is_certain() -> None:
@@ -41,9 +43,14 @@ def test_a_gain_over_oneself_is_certain() -> None:
     assert gain(power, power) == (0.0, 0.0)
 
 
+def test_own_moments_have_no_known_error(smooth_moments: fes_mj.JointMoments) -> None:
+    with pytest.raises(InputError, match="smooth: nothing is known of the error"):
+        uncertain_table(smooth_moments)
+
+
 def test_caution_trades_gain_for_certainty() -> None:
     pytest.importorskip("cma")
-    table, base = uncertain_table("p1p3"), problem_of("d2", grashof_min=0.005)
+    table, base = uncertain_table(fes_mj.load_moments("p1p3")), problem_of("d2", grashof_min=0.005)
     found = []
     for caution in (0.0, 2.0):
         own = fes_mj.load_design("d2")

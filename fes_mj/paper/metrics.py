@@ -1,0 +1,182 @@
+"""The criteria of the paper's Section 7, which it discusses in words, as numbers for all five designs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fes_mj.fourier import fourier
+from fes_mj.kinematics import Motion
+from fes_mj.paper.reconstruction import Posterior
+from fes_mj.paper.runs import Runs
+from fes_mj.paper.table import Table
+from fes_mj.statics import QuasiStatic
+from fes_mj.torque import GROUPS, JOINTS, joint_angles, source_angle
+
+WIDTHS = (2.0, 5.0, 10.0)  # deg over which a jump of the torque map is smoothed
+_DRAWS = 20_000  # of the criteria's weights
+_SEED = 2022
+
+
+def size_table(runs: Runs) -> Table:
+    """Section 7.1: where the crank lies, how large the mechanism is, how well it transmits."""
+    rows: list[tuple[Any, ...]] = []
+    for name, result in _by_design(runs).items():
+        width, height = extent(result.motion)
+        angles = transmission_angles(result.motion)
+        distance = abs(result.design.linkage.crank_centre)
+        rows.append(
+            (name.upper(), 100 * distance, 100 * width, 100 * height, angles["knee"], angles.get("rocker_joint"))
+        )
+    columns = {
+        "design": "",
+        "hip to crank centre, cm": ".1f",
+        "length, cm": ".1f",
+        "height, cm": ".1f",
+        "smallest transmission angle: knee, deg": ".1f",
+        "rocker joint, deg": ".1f",
+    }
+    note = (
+        "Length and height of the box around hip, knee and every joint of the linkage over the turn. Transmission "
+        "angle: between the two links of a dyad, folded to at most 90 deg; a usual rule wants more than 40 deg."
+    )
+    return Table("7.1 Size and transmission", columns, rows, note)
+
+
+def continuity_table(runs: Runs, posteriors: dict[str, Posterior]) -> Table:
+    """Section 7.2: the jump of the torque map at each end of travel, and what smoothing it costs in mean power."""
+    rows = []
+    for (name, group), result in runs.static.items():
+        jumps = [_with_sd(*posteriors[group].predict(weights)) for weights in jump_weights(result)]
+        costs = [_with_sd(*posteriors[group].predict(smoothing_weights(result, np.radians(w)))) for w in WIDTHS]
+        rows.append((name.upper(), group, *jumps, *costs))
+    ends = [f"{joint} at {end}, N m" for joint in JOINTS for end in ("most bent", "most extended")]
+    columns = dict.fromkeys(["design", "group", *ends, *(f"cost of {w:g} deg, W" for w in WIDTHS)], "")
+    note = (
+        "Jump: moment in extension less moment in flexion at that angle. Cost: what mean power loses "
+        "when within so many degrees of either end each joint's moment passes linearly into the mean of its two "
+        "branches. The TRT's ends are the map's own: no jump, but near them the branches are smoothed as well."
+    )
+    return Table("7.2 Continuity of the joint moments", columns, rows, note)
+
+
+def distribution_table(runs: Runs) -> Table:
+    """Section 7.3: how power is spread over the turn, by the joint moments alone."""
+    rows = []
+    for (name, group), result in runs.static.items():
+        power = result.power
+        lowest, highest = float(power.min()), float(power.max())
+        rows.append((name.upper(), group, 100 * inactive_share(power), lowest, highest, highest / result.power_mean))
+    columns = {
+        "design": "",
+        "group": "",
+        "inactive zone, % of turn": ".1f",
+        "lowest, W": ".1f",
+        "highest, W": ".1f",
+        "peak per mean": ".2f",
+    }
+    note = "Inactive zone: where one leg's muscles take power from the crank. Segment masses are left out here."
+    return Table("7.3 Distribution of power", columns, rows, note)
+
+
+class Criterion(NamedTuple):
+    """A criterion of Section 7: what is measured, and its value of a design (large is good)."""
+
+    title: str
+    value: Callable[[list[QuasiStatic]], float]
+
+
+def ranking_table(runs: Runs, posteriors: dict[str, Posterior]) -> Table:
+    """A ranking with stated weights, and how much it depends on them."""
+    results = {name: [runs.static[name, group] for group in GROUPS] for name in _by_design(runs)}
+
+    def smoothing_loss(pair: list[QuasiStatic]) -> float:
+        costs = (
+            posteriors[r.moments.name].predict(smoothing_weights(r, np.radians(5.0)))[0] / r.power_mean for r in pair
+        )
+        return -float(np.mean([*costs]))
+
+    criteria = (
+        Criterion("power: mean of both groups", lambda pair: float(np.mean([r.power_mean for r in pair]))),
+        Criterion("size: length x height", lambda pair: -float(np.prod(extent(pair[0].motion)))),
+        Criterion("transmission: smallest angle", lambda pair: min(transmission_angles(pair[0].motion).values())),
+        Criterion("continuity: loss by 5 deg of smoothing", smoothing_loss),
+        Criterion("inactive zone", lambda pair: -float(np.mean([inactive_share(r.power) for r in pair]))),
+        Criterion("peak per mean", lambda pair: -float(np.mean([r.power.max() / r.power_mean for r in pair]))),
+    )
+    values = np.array([[criterion.value(pair) for criterion in criteria] for pair in results.values()])
+    scores = (values - values.min(axis=0)) / np.ptp(values, axis=0)
+    draws = np.random.default_rng(_SEED).dirichlet(np.ones(len(criteria)), _DRAWS)
+    wins = np.bincount(np.argmax(draws @ scores.T, axis=1), minlength=len(results)) / _DRAWS
+    total = scores.mean(axis=1)
+    rows = [
+        (name.upper(), *scores[i], total[i], str(1 + int(np.sum(total > total[i]))), 100 * wins[i])
+        for i, name in enumerate(results)
+    ]
+    columns = {
+        "design": "",
+        **{criterion.title: ".2f" for criterion in criteria},
+        "mean score": ".2f",
+        "rank": "",
+        "first for, % of weights": ".0f",
+    }
+    note = (
+        f"Each criterion runs from 0 (worst of the five) to 1 (best); all {len(criteria)} weigh the same. Last column: "
+        "how often a design is first when the weights are drawn at random (uniformly among those that add to 1)."
+    )
+    return Table("A ranking", columns, rows, note)
+
+
+def extent(motion: Motion) -> tuple[float, float]:
+    """Length and height of the box around all joints over the turn, m."""
+    points = np.concatenate([np.atleast_1d(jet.value).ravel() for jet in motion.points.values()])
+    return float(np.ptp(points.real)), float(np.ptp(points.imag))
+
+
+def transmission_angles(motion: Motion) -> dict[str, float]:
+    """Smallest transmission angle over the turn, deg, at the joint of each dyad."""
+    dyads = {"knee": ("thigh", "shank"), "rocker_joint": ("rocker", "coupler")}
+    angles = {}
+    for joint, (one, other) in dyads.items():
+        if joint in motion.points:
+            cosine = (motion.direction(one) * np.conj(motion.direction(other))).real
+            angles[joint] = float(np.degrees(np.acos(np.clip(np.abs(cosine), 0, 1)).min()))
+    return angles
+
+
+def inactive_share(power: NDArray[np.float64]) -> float:
+    """Share of the turn with negative power."""
+    return float(np.mean(power < 0))
+
+
+def jump_weights(result: QuasiStatic) -> list[NDArray[np.float64]]:
+    """Jumps of the torque map, extension less flexion, as functionals of the curves: knee bent, extended, then hip."""
+    weights = []
+    for joint, (angle, _) in joint_angles(result.motion).items():
+        for end in (angle.min(), angle.max()):
+            jump = fourier(source_angle(joint, end, 1.0)) - fourier(source_angle(joint, end, -1.0))
+            weights.append(np.concatenate([jump * (joint == other) for other in JOINTS]))
+    return weights
+
+
+def smoothing_weights(result: QuasiStatic, width: float) -> NDArray[np.float64]:
+    """Mean power lost by smoothing the jumps over `width` (rad) at each end, as a functional of the curves."""
+    parts = []
+    for joint, (angle, rate) in joint_angles(result.motion).items():
+        from_end = np.minimum(angle - angle.min(), angle.max() - angle)
+        lost = (1 - np.clip(from_end / width, 0, 1)) / 2  # of the difference to the other branch
+        own, opposite = (fourier(source_angle(joint, angle, sign * rate)) for sign in (1, -1))
+        parts.append((rate * lost) @ (own - opposite) / rate.size)
+    return result.cadence * np.concatenate(parts)
+
+
+def _by_design(runs: Runs) -> dict[str, QuasiStatic]:
+    """One result a design, for what does not depend on the moments."""
+    return {name: result for (name, group), result in runs.static.items() if group == GROUPS[0]}
+
+
+def _with_sd(value: float, deviation: float) -> str:
+    return f"{value:.1f} +- {deviation:.1f}"

@@ -1,0 +1,135 @@
+"""The identified dimensions beside the print, and what other readings of the paper would have given."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from fes_mj.design_file import load_design
+from fes_mj.errors import AssemblyError
+from fes_mj.kinematics import require_assembly
+from fes_mj.paper.identification import (
+    COUPLER_ANGLE,
+    SEAT_ANGLE,
+    grashof_margin,
+    identify,
+    joint_ranges,
+    pack,
+    range_misfit,
+)
+from fes_mj.paper.printed import SIX_BARS, table1
+from fes_mj.paper.table import Table
+
+LENGTHS = ("R1x", "R1y", "R2", "R6", "R7x", "R7y", "R8", "R9", "R10")
+
+
+class Reading(NamedTuple):
+    """One way to read what the paper leaves out; angles in rad."""
+
+    title: str
+    designs: tuple[str, ...] = SIX_BARS
+    seat_angle: float = SEAT_ANGLE
+    coupler_angle: float = COUPLER_ANGLE
+    mirrored: bool = False  # R1y with the other sign
+
+
+def readings() -> list[Reading]:
+    """The chosen reading first, then the alternatives."""
+    seats = [Reading(f"seat angle {angle:g} deg", seat_angle=math.radians(angle)) for angle in (28, 29, 31, 32)]
+    couplers = [
+        Reading(f"gamma {angle:g} deg", ("d1", "d2"), coupler_angle=math.radians(angle))
+        for angle in (75, 80, 85, 95, 100, 105)
+    ]
+    return [
+        Reading("chosen: seat angle 30 deg, gamma 90 deg"),
+        *seats,
+        Reading("seat angle 60 deg, as Section 3 needs for the TRT", seat_angle=math.radians(60)),
+        Reading("seat angle 15.4 deg, as Table 2 needs for the TRT", seat_angle=math.radians(15.4)),
+        Reading("R1y with the other sign", mirrored=True),
+        *couplers,
+        Reading("gamma 0 deg: pedal on the coupler's line", ("d1", "d2"), coupler_angle=0.0),
+        Reading("gamma -90 deg: pedal on the other side", ("d1", "d2"), coupler_angle=-math.pi / 2),
+    ]
+
+
+def readings_table(done: Callable[[], None]) -> Table:
+    """Every reading: does a point of the rounding box fit Table 1, at which cost, or how far does the best one miss."""
+    rows = []
+    for reading in readings():
+        outcome = dict(_outcomes(reading))
+        rows.append((reading.title, *(outcome.get(name, "as chosen") for name in SIX_BARS)))
+        done()
+    return Table(
+        "Other readings",
+        {"reading": "", **dict.fromkeys((name.upper() for name in SIX_BARS), "")},
+        rows,
+        "Where a point inside the rounding of Table 2 moves as Table 1 says, the cost: the sum of squared shifts, each "
+        "in half-widths of the rounding (0.5 cm). Where none was found, by how many degrees the least-squares fit "
+        "inside the rounding misses a joint range.",
+    )
+
+
+def _outcomes(reading: Reading) -> Iterator[tuple[str, str]]:
+    for name in reading.designs:
+        printed, target = load_design(name, "printed"), table1()[name]
+        if reading.mirrored:
+            printed = replace(printed, linkage=replace(printed.linkage, ground=np.conj(printed.linkage.ground)))
+        result = identify(printed, target, reading.seat_angle, reading.coupler_angle)
+        if result.found:
+            yield name, f"fits, cost {result.cost:.2f}"
+        else:
+            yield name, f"misses by {range_misfit(printed, target, reading.seat_angle, reading.coupler_angle):.1f} deg"
+
+
+def dimensions_table() -> Table:
+    """Table 2: printed and identified lengths, cm, and the shift between them."""
+    rows = []
+    for name in SIX_BARS:
+        printed, identified = (100 * pack(load_design(name, dims).linkage) for dims in ("printed", "identified"))
+        rows += [
+            (name.upper(), length, *values)
+            for length, *values in zip(LENGTHS, printed, identified, identified - printed, strict=True)
+        ]
+    columns = {"design": "", "length": "", "printed, cm": ".0f", "identified, cm": ".3f", "shift, cm": "+.3f"}
+    note = "Seat angle 30 deg and gamma 90 deg for all; the gear ratio is as printed. Rounding allows 0.5 cm of shift."
+    return Table("Table 2: dimensions", columns, rows, note)
+
+
+def ranges_table() -> Table:
+    """Joint ranges: Table 1, printed dimensions, identified dimensions, and Grashof's margin of both."""
+    rows = []
+    for name, target in table1().items():
+        wanted = np.array([*target.knee_range, *target.hip_range])
+        for dims in ("printed", "identified"):
+            design = load_design(name, dims)
+            try:
+                require_assembly(design)
+                ranges = [float(value) for value in joint_ranges(design)]
+                error: float | None = float(np.abs(ranges - wanted).max())
+            except AssemblyError:
+                ranges, error = [], None
+            verdict = "cannot turn" if error is None else "yes" if error <= 0.5 else "no"
+            margin = None if name == "trt" else 100 * grashof_margin(design.linkage)
+            rows.append((name.upper(), dims, _span(wanted, 0), _span(ranges, 1), error, verdict, margin))
+    columns = {
+        "design": "",
+        "dimensions": "",
+        "paper: knee, hip, deg": "",
+        "ours: knee, hip, deg": "",
+        "largest difference, deg": ".2f",
+        "within rounding": "",
+        "Grashof margin, cm": ".2f",
+    }
+    note = "Table 1 is rounded to 1 deg. The TRT's seat angle is 60 deg in Section 3 and 15.4 deg with Table 2's R1."
+    return Table("Table 1: joint ranges", columns, rows, note)
+
+
+def _span(ranges: list[float] | np.ndarray, digits: int) -> str:
+    if not len(ranges):
+        return "-"
+    knee_low, knee_high, hip_low, hip_high = (f"{value:.{digits}f}" for value in ranges)
+    return f"{knee_low} to {knee_high}, {hip_low} to {hip_high}"

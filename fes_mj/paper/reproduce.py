@@ -1,0 +1,130 @@
+"""Write everything that is said about the paper: tables, figures and numbers with their provenance."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from fes_mj.files import json_text, replacing, write_text
+from fes_mj.paper import gains, metrics, readings, recovery, tables
+from fes_mj.paper.evidence import load_evidence
+from fes_mj.paper.printed import DATA
+from fes_mj.paper.reconstruction import Reconstruction, reconstruct
+from fes_mj.paper.runs import RUNS, Runs, run_all
+from fes_mj.paper.table import Table
+from fes_mj.provenance import provenance
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+DPI = 150  # of the PNG; the SVG is for print
+
+Done = Callable[[], None]
+
+
+def steps() -> int:
+    """How often reproduce calls `done`."""
+    from fes_mj.paper.figures import FIGURES
+
+    return RUNS + len(readings.readings()) + len(FIGURES)
+
+
+def reproduce(folder: Path, done: Done) -> list[Path]:
+    """Write pages, figures and reproduction.json into an existing folder; `done` is called steps() times.
+
+    Every file appears whole or not at all. Returns the files written.
+    """
+    from fes_mj.paper.figures import FIGURES
+
+    evidence = load_evidence()
+    recovered = reconstruct(evidence)
+    runs = run_all(done)
+    pages = {
+        "identification.md": ("Dimensions behind the paper's Table 2", _identification(done)),
+        "moments.md": ("Joint moments recovered from the paper's powers", _moments(evidence, recovered)),
+        "powers.md": ("Powers, gains and joint ranges beside the paper's", _powers(runs)),
+        "metrics.md": ("The criteria of Section 7 as numbers", _metrics(runs, recovered)),
+        "gains.md": ("How much of the gain is real", _gains(runs)),
+    }
+    written = [_write_page(folder / name, *page) for name, page in pages.items()]
+    (folder / "figures").mkdir(exist_ok=True)
+    for name, draw in FIGURES.items():
+        written += _write_figure(folder / "figures" / name, partial(draw, runs, recovered.posteriors))
+        done()
+    record = {"provenance": provenance(inputs(), ["matplotlib"]), "hyperparameters": recovered.hyperparameters.__dict__}
+    record |= {
+        name.removesuffix(".md"): {table.title: table.records() for table in contents}
+        for name, (_, contents) in pages.items()
+    }
+    return [*written, _write_record(folder / "reproduction.json", record)]
+
+
+def inputs() -> list[Path]:
+    """The data files that the results depend on."""
+    shared = [DATA / f"{name}.toml" for name in ("paper", "evidence", "torque_velocity")]
+    return [*shared, *sorted((DATA / "designs").glob("*/*.toml")), *sorted((DATA / "moments").iterdir())]
+
+
+def _identification(done: Done) -> list[Table]:
+    return [readings.dimensions_table(), readings.ranges_table(), readings.readings_table(done)]
+
+
+def _moments(evidence: list[Any], recovered: Reconstruction) -> list[Table]:
+    return [
+        recovery.evidence_table(evidence, recovered),
+        recovery.left_out_table(evidence, recovered),
+        recovery.sensitivity_table(evidence, recovered),
+        recovery.predictive_table(recovered),
+        recovery.rounding_table(recovered),
+    ]
+
+
+def _powers(runs: Runs) -> list[Table]:
+    return [
+        tables.power_table(runs),
+        tables.gain_table(runs),
+        tables.motion_table(runs),
+        readings.ranges_table(),
+        tables.check_table(runs),
+    ]
+
+
+def _metrics(runs: Runs, recovered: Reconstruction) -> list[Table]:
+    return [
+        metrics.size_table(runs),
+        metrics.continuity_table(runs, recovered.posteriors),
+        metrics.distribution_table(runs),
+        metrics.ranking_table(runs, recovered.posteriors),
+    ]
+
+
+def _gains(runs: Runs) -> list[Table]:
+    return [gains.speed_table(runs), gains.hill_table(runs), gains.smoothness_table(runs)]
+
+
+def _write_page(path: Path, title: str, contents: list[Table]) -> Path:
+    origin = "Written by `fes_mj reproduce`; versions and inputs: reproduction.json. Errors are one standard deviation."
+    write_text(path, "\n".join([f"# {title}\n", f"{origin}\n", *(table.markdown() for table in contents)]))
+    return path
+
+
+def _write_figure(stem: Path, draw: Callable[[], Figure]) -> list[Path]:
+    import matplotlib
+
+    from fes_mj.paper.figures import STYLE
+
+    paths = [stem.with_suffix(".png"), stem.with_suffix(".svg")]
+    with matplotlib.rc_context(STYLE):
+        figure = draw()
+        for path in paths:
+            with replacing(path) as temporary:
+                metadata = {"Date": None} if path.suffix == ".svg" else {"Software": None}
+                figure.savefig(temporary, dpi=DPI, metadata=metadata)
+    return paths
+
+
+def _write_record(path: Path, record: dict[str, Any]) -> Path:
+    write_text(path, json_text(record))
+    return path

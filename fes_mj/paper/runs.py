@@ -1,0 +1,54 @@
+"""The runs that tables and figures share: every design of the paper under both groups' moments, static and dynamic."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fes_mj.crosscheck import CrossCheck, cross_check
+from fes_mj.design_file import CATALOGUE, load_design
+from fes_mj.errors import AssemblyError
+from fes_mj.statics import QuasiStatic, quasi_static
+from fes_mj.torque import GROUPS, load_moments
+from fes_mj.torque_velocity import load_torque_velocity
+
+RUNS = 2 * len(CATALOGUE) * len(GROUPS)  # simulations, with one leg and with two
+
+
+@dataclass(frozen=True)
+class Runs:
+    """By (design, group): statics with identified and with printed dimensions (None where the print cannot turn), with
+    Hill's torque-velocity relation, and the checked simulations by (design, group, legs).
+    """
+
+    static: dict[tuple[str, str], QuasiStatic]
+    printed: dict[tuple[str, str], QuasiStatic | None]
+    hill: dict[tuple[str, str], QuasiStatic]
+    dynamic: dict[tuple[str, str, int], CrossCheck]
+
+
+def run_all(done: Callable[[], None]) -> Runs:
+    """Solve and simulate everything; `done` is called after each of RUNS simulations."""
+    runs = Runs({}, {}, {}, {})
+    moments = {group: load_moments(group) for group in GROUPS}
+    for name in CATALOGUE:
+        for group in GROUPS:
+            key, design = (name, group), load_design(name)
+            runs.static[key] = quasi_static(design, moments[group])
+            runs.hill[key] = quasi_static(design, replace(moments[group], torque_velocity=load_torque_velocity("hill")))
+            try:
+                runs.printed[key] = quasi_static(load_design(name, "printed"), moments[group])
+            except AssemblyError:
+                runs.printed[key] = None
+            for legs in (1, 2):
+                runs.dynamic[name, group, legs] = cross_check(design, moments[group], legs=legs)
+                done()
+    return runs
+
+
+def joint_speed(result: QuasiStatic, joint: str) -> tuple[float, float]:
+    """Mean and peak absolute speed of a joint over the turn, rad/s."""
+    speed = result.cadence * np.abs(getattr(result.motion, f"{joint}_rate"))
+    return float(speed.mean()), float(speed.max())

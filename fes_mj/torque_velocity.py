@@ -1,0 +1,50 @@
+"""How a joint's moment changes with its speed: Hill's hyperbola. Off by default, as in the paper."""
+
+from __future__ import annotations
+
+import tomllib
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class TorqueVelocity:
+    """Moment at a joint speed per moment at rest, by one muscle for the joint.
+
+    curvature: Hill's a / F0. eccentric_plateau: moment of fast lengthening. max_speed: by joint, rad/s, at which
+    nothing is left of a shortening muscle's moment.
+    """
+
+    name: str
+    curvature: float
+    eccentric_plateau: float
+    max_speed: dict[str, float]
+
+    def factor(self, joint: str, speed: Any) -> Any:
+        """Moment per moment at rest; speed in rad/s along the moment, negative where it lengthens the muscle."""
+        relative = np.asarray(speed) / self.max_speed[joint]
+        return self._hyperbolas(np.clip(relative, 0, 1), np.maximum(-relative, 0))
+
+    def float_factor(self, joint: str, speed: float) -> float:
+        """The same for a plain float, without numpy."""
+        relative = speed / self.max_speed[joint]
+        return self._hyperbolas(min(max(relative, 0.0), 1.0), max(-relative, 0.0))
+
+    def _hyperbolas(self, shortening: Any, lengthening: Any) -> Any:
+        """Hill (1938) while shortening, a hyperbola of the same slope at rest while lengthening. One speed is zero."""
+        excess = self.eccentric_plateau - 1
+        steepness = (1 + 1 / self.curvature) / excess
+        concentric = (1 - shortening) / (1 + shortening / self.curvature)
+        return concentric + excess * (1 - 1 / (1 + steepness * lengthening))
+
+
+@cache
+def load_torque_velocity(name: str) -> TorqueVelocity:
+    """A relation ("hill") with its parameters of data/torque_velocity.toml."""
+    path = Path(__file__).parent / "data" / "torque_velocity.toml"
+    row = tomllib.loads(path.read_text(encoding="utf-8"))[name]
+    return TorqueVelocity(name, row["curvature"], row["eccentric_plateau"], row["max_speed_rad_s"])
