@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import fes_mj
-from fes_mj.crosscheck import cross_check
+from fes_mj.crosscheck import cross_check, refined_cross_check
 from fes_mj.errors import UnstableError
 from fes_mj.simulation import FORCE_EVERY
 
@@ -78,6 +78,20 @@ def test_moments_that_deliver_next_to_nothing_agree_too(design: fes_mj.Design, k
     result = cross_check(design, moments)
     assert abs(result.simulation.power_mean - result.static.power_mean) <= 5e-3  # W
     assert result.agrees
+
+
+def test_a_step_that_is_too_long_by_default_is_refined(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("fes_mj.mjcf.TARGET_TIMESTEP", 1e-3)
+    design, moments = fes_mj.load_design("r2"), fes_mj.load_moments("p1p2")
+    coarse, result = cross_check(design, moments), refined_cross_check(design, moments)
+    assert not coarse.agrees
+    assert (result.agrees, result.refinements) == (True, 1)
+    assert result.simulation.timestep == pytest.approx(coarse.simulation.timestep / 4, rel=1e-3)
+
+
+def test_refinement_does_not_hide_a_mistake(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("fes_mj.mjcf.SERVO_GAIN", 20.0)
+    assert not refined_cross_check(fes_mj.load_design("trt"), fes_mj.load_moments("p1p2")).agrees
 
 
 def test_a_slack_servo_is_noticed(monkeypatch: pytest.MonkeyPatch, smooth_moments: fes_mj.JointMoments) -> None:

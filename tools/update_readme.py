@@ -22,10 +22,11 @@ def ten_runs() -> str:
     for name in CATALOGUE:
         for group in GROUPS:
             result = cross_check(load_design(name), load_moments(group))
+            difference = round(100 * result.relative_difference, 3) + 0.0  # no minus zero
             rpm = load_design(name).linkage.cadence * 30 / math.pi
             lines.append(
                 f"| {name.upper()} | {group.upper()} | {rpm:.1f} | {result.static.power_mean:.2f} "
-                f"| {result.simulation.power_mean:.2f} | {100 * result.relative_difference:+.3f} "
+                f"| {result.simulation.power_mean:.2f} | {difference:+.3f} "
                 f"| {table1()[name].power[group]:.2f} |"
             )
     return "\n".join(lines) + "\n"

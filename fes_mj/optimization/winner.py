@@ -18,10 +18,6 @@ from fes_mj.uncertainty import difference_sd
 if TYPE_CHECKING:
     from fes_mj.crosscheck import CrossCheck
 
-# The simulation's error is of first order in its step, and grows with how sharply a design turns its links round. One
-# that disagrees with statics is tried again with a quarter of the step, this often; what then disagrees, disagrees.
-REFINEMENTS = 2
-
 
 @dataclass(frozen=True)
 class Winner:
@@ -43,29 +39,20 @@ class Winner:
 
 def assess(design: Design, rival: Design, moments: JointMoments, seed: int = 0) -> Winner:
     """Simulate a design against statics, compare it with a rival, sample its tolerances."""
+    from fes_mj.crosscheck import refined_cross_check
+
     table, random = WorkTable.of(moments), np.random.default_rng(seed)
     turn = cycles(design, table)
     return Winner(
         design=design,
         rival=rival,
-        check=_refined(design, moments),
+        check=refined_cross_check(design, moments),
         speeds=joint_speeds(design, table),
         reversals={joint: int(count[0]) for joint, count in turn.reversals.items()},
         gain=gain_over(design, rival, moments),
         manufacturing=to_manufacturing(design, table, random),
         rider=to_rider(design, table, random),
     )
-
-
-def _refined(design: Design, moments: JointMoments) -> CrossCheck:
-    from fes_mj.crosscheck import cross_check
-
-    check = cross_check(design, moments)
-    for _ in range(REFINEMENTS):
-        if check.agrees:
-            break
-        check = cross_check(design, moments, timestep=check.simulation.timestep / 4)
-    return check
 
 
 def gain_over(design: Design, rival: Design, moments: JointMoments) -> Gain | None:
