@@ -5,8 +5,8 @@ import numpy as np
 import fes_mj
 from fes_mj.inverse_dynamics import body_loads
 from fes_mj.kinematics import solve
-from fes_mj.simulation import FORCE_EVERY
 from fes_mj.statics import equilibrium, joint_moments
+from fes_mj.stepping import FORCE_EVERY
 
 design, moments = fes_mj.load_design("r1"), fes_mj.load_moments("p1p3")
 static = fes_mj.quasi_static(design, moments)

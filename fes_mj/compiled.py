@@ -14,12 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fes_mj.errors import import_extra
-from fes_mj.simulation import FORCE_EVERY, Loop, Records, drive_addresses
+from fes_mj.stepping import FORCE_EVERY, Loop, Records, drive_addresses
 from fes_mj.torque import JOINTS, TorqueMap, scalar_map
 
 
 def compiled_loop(torque_map: TorqueMap, drives: dict[str, str]) -> Loop:
-    """The loop of simulation.run_steps for the drives (joint name -> "knee" or "hip") under a torque map.
+    """The loop of stepping.feedback_loop for the drives (joint name -> "knee" or "hip") under a torque map.
 
     It releases Python's lock: loops run side by side in threads. Raises MissingPartError without numba.
     """

@@ -8,7 +8,7 @@ import pytest
 import fes_mj
 from fes_mj.crosscheck import cross_check, refined_cross_check
 from fes_mj.errors import UnstableError
-from fes_mj.simulation import FORCE_EVERY
+from fes_mj.stepping import FORCE_EVERY
 
 
 @pytest.mark.parametrize("legs", [1, 2])

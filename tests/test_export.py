@@ -19,13 +19,15 @@ from fes_mj import load_design, load_moments
 from fes_mj.checks import criteria
 from fes_mj.cli import run
 from fes_mj.cli.export import _Variant
+from fes_mj.design import LEGS
 from fes_mj.design_file import CATALOGUE
 from fes_mj.errors import InputError
 from fes_mj.export import VARIANTS, mjcf_text, scene_text, sidecar_text, variant_options
 from fes_mj.mjcf import build_mjcf, steps_per_turn
 from fes_mj.segments import inertias
-from fes_mj.simulation import joint_drives, run_steps, simulate
+from fes_mj.simulation import joint_drives, simulate
 from fes_mj.statics import quasi_static
+from fes_mj.stepping import feedback_loop, run_loop
 from fes_mj.torque import TorqueMap
 
 COMBINATIONS = [
@@ -120,8 +122,8 @@ def test_the_compatible_variant_gives_the_power_of_statics(name: str) -> None:
     """Euler and a flywheel in the place of `discrete` and a servo: same limits as the cross-check."""
     design, moments = load_design(name), load_moments()
     model = build_mjcf(design, integrator="euler").compile()
-    feedback = {joint: TorqueMap(moments).feedback(joint) for joint in ("hip", "knee")}
-    record = run_steps(model, feedback, steps_per_turn(design.linkage.cadence))
+    loop = feedback_loop(TorqueMap(moments), joint_drives(LEGS[1]))
+    record = run_loop(model, loop, steps_per_turn(design.linkage.cadence))
     column = {model.sensor(i).name: int(model.sensor(i).adr[0]) for i in range(model.nsensor)}
     speed = record.sensors[:-1, column["crank_speed"]]
     power = record.sensors[:-1, column["crank_torque"] + 1] * speed

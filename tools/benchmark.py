@@ -19,7 +19,8 @@ from fes_mj.files import write_text
 from fes_mj.kinematics import positions
 from fes_mj.mjcf import LEGS, build_mjcf, steps_per_turn
 from fes_mj.provenance import provenance
-from fes_mj.simulation import joint_drives, run_steps
+from fes_mj.simulation import joint_drives
+from fes_mj.stepping import feedback_loop, run_loop
 from fes_mj.torque import TorqueMap, load_moments
 
 ANGLES = np.linspace(0, 2 * np.pi, 360, endpoint=False)
@@ -103,7 +104,7 @@ def simulation(name: str) -> dict[str, np.ndarray]:
     """Steps per second of simulate's loop, with feedback and all records, and of a bare mj_step loop on its model."""
     design, torque_map = load_design(name), TorqueMap(load_moments("p1p2"))
     model, steps = build_mjcf(design).compile(), 2 * steps_per_turn(design.linkage.cadence)
-    feedback = {joint: torque_map.feedback(kind) for joint, kind in joint_drives(LEGS[1]).items()}
+    loop = feedback_loop(torque_map, joint_drives(LEGS[1]))
 
     def bare() -> None:
         data = mujoco.MjData(model)
@@ -114,7 +115,7 @@ def simulation(name: str) -> dict[str, np.ndarray]:
 
     return rates(
         {
-            f"{name}: simulate": (steps, lambda: run_steps(model, feedback, steps)),
+            f"{name}: simulate": (steps, lambda: run_loop(model, loop, steps)),
             f"{name}: bare mj_step": (steps, bare),
         }
     )

@@ -174,7 +174,7 @@ def simulated() -> dict[str, np.ndarray]:
             "single path: simulate": (TURNS, lambda: [simulate(design, MOMENTS) for design in riders]),
             "batch path: simulate, compiled": (
                 TURNS,
-                lambda: [simulate(design, MOMENTS, compiled=True) for design in riders],
+                lambda: [simulate(design, MOMENTS, make_loop=compiled_loop) for design in riders],
             ),
             "stepping of the batch path, one thread": (TURNS, lambda: list(map(fed_back, models))),
             "bare rollout, one thread": (

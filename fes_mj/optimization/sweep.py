@@ -143,6 +143,7 @@ def _dynamic(
     design: Design, values: Columns, moments: JointMoments, timestep: float | None, turns: NDArray[np.bool_]
 ) -> Columns:
     """One simulated turn of every point that turns, the loop in machine code."""
+    from fes_mj.compiled import compiled_loop
     from fes_mj.simulation import simulate
 
     result = {
@@ -152,7 +153,7 @@ def _dynamic(
         point = {name: float(column[row]) for name, column in values.items()}
         cadence = point["cadence_rpm"] * math.pi / 30 if "cadence_rpm" in point else None
         try:
-            run = simulate(vary(design, point), moments, cadence=cadence, timestep=timestep, compiled=True)
+            run = simulate(vary(design, point), moments, cadence=cadence, timestep=timestep, make_loop=compiled_loop)
         except (UnstableError, InputError):  # it breaks down, or closes too narrowly to be built
             continue
         for name, value in zip(result, (run.power_mean, run.loop_gap_max, run.cadence_ripple), strict=True):

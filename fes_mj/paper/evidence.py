@@ -21,6 +21,7 @@ from fes_mj.uncertainty import power_weights
 UNITS = {"power": "W", "crank_power": "W", "moment": "N m", "work_share": "1"}
 DIRECTIONS = {"extension": 1.0, "flexion": -1.0, "both": 0.0}
 LARGEST_NUMBER = 1e6  # in any unit here; beyond it something else was meant
+SHORTEST_LEG, LONGEST_LEG = 0.475, 1.0  # m, thigh and shank alike
 _ANGLES = np.linspace(0, 2 * np.pi, 1440, endpoint=False)
 
 
@@ -100,6 +101,11 @@ def _check(path: Path, row: Evidence, sources: dict[str, str]) -> None:
             )
         if key in positive and number <= 0:
             raise InputError(f"{path}: evidence {row.name!r}: {key} is {number}; it must be above 0")
+    if "leg_m" in positive and not SHORTEST_LEG <= row.leg_m <= LONGEST_LEG:
+        raise InputError(
+            f"{path}: evidence {row.name!r}: leg_m is {row.leg_m}; "
+            f"it must be from {SHORTEST_LEG} to {LONGEST_LEG} m, or the TRT does not close"
+        )
 
 
 def functional(row: Evidence) -> tuple[NDArray[np.float64], float, float]:

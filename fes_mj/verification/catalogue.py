@@ -6,7 +6,7 @@ import math
 
 import mujoco
 
-from fes_mj import inverse_dynamics, kinematics, simulation, statics
+from fes_mj import inverse_dynamics, kinematics, simulation, statics, stepping
 from fes_mj.kinematics import Motion
 from fes_mj.torque import REFERENCE, TorqueMap
 from fes_mj.verification.faults import Fault, Patch
@@ -157,7 +157,7 @@ FAULTS = (
         "no_pre_roll",
         "measured from the second step on",
         "inverse_dynamics",
-        (Patch(simulation, "PRE_ROLL", lambda _: 1),),
+        (Patch(stepping, "PRE_ROLL", lambda _: 1),),
     ),
     Fault(
         "gear_squared",

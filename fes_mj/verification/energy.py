@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fes_mj.mjcf import LEGS, build_mjcf, steps_per_turn
-from fes_mj.simulation import joint_drives, run_steps
+from fes_mj.simulation import joint_drives
+from fes_mj.stepping import recording_loop, run_loop
 from fes_mj.torque import TorqueMap
 from fes_mj.verification.case import Case
 
@@ -57,13 +58,9 @@ def audit(case: Case, turns: int = 1) -> Audit:
     model, steps = build_mjcf(case.design, cadence=case.cadence).compile(), turns * steps_per_turn(case.cadence)
     torque_map = TorqueMap(case.moments)
     drives = joint_drives(LEGS[1])
-    run = run_steps(
-        model,
-        {name: torque_map.feedback(joint) for name, joint in drives.items()},
-        steps,
-        ("ctrl", "qfrc_constraint", "qfrc_passive", "actuator_force"),
-        every=1,
-    )
+    feedback = {name: torque_map.feedback(joint) for name, joint in drives.items()}
+    forces = ("ctrl", "qfrc_constraint", "qfrc_passive", "actuator_force")
+    run = run_loop(model, recording_loop(feedback, forces, every=1), steps)
     column = {model.sensor(i).name: int(model.sensor(i).adr[0]) for i in range(model.nsensor)}
     speeds = [column[f"{model.joint(i).name}_speed"] for i in range(model.njnt)]
     speed = run.sensors[:, speeds]

@@ -23,7 +23,7 @@ from fes_mj.checks import Check, check
 from fes_mj.design import Design, Linkage, Rider
 from fes_mj.mjcf import AXIS, LOOP_SOLIMP, add_body, build_mjcf, set_options
 from fes_mj.segments import GRAVITY, Inertia
-from fes_mj.simulation import run_steps
+from fes_mj.stepping import recording_loop, run_loop
 
 WINDOWS = 2  # of the chain, as in the library's table of results
 CHAIN_TIME = 10.0  # s
@@ -147,7 +147,7 @@ def run_four_bar() -> tuple[float, float]:
         body, mass = spec.body(name), BAR_DENSITY * length * BAR_WIDTH**2
         body.mass, body.ipos, body.inertia = mass, (length / 2, 0, 0), [mass * (length**2 + BAR_WIDTH**2) / 12] * 3
     model = spec.compile()
-    run = run_steps(model, {}, round(FOUR_BAR_TURNS / FOUR_BAR_TIMESTEP))
+    run = run_loop(model, recording_loop({}), round(FOUR_BAR_TURNS / FOUR_BAR_TIMESTEP))
 
     def column(sensor: str, size: int = 1) -> NDArray[np.float64]:
         start = int(model.sensor(sensor).adr[0])

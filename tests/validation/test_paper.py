@@ -101,6 +101,8 @@ def test_knee_plateau_of_section_7() -> None:
         ('group = "p1p3"', 'group = "p9"', "group is 'p9'"),
         ('unit = "W"', 'unit = "kW"', "unit is 'kW'"),
         ("error = 0.4", "error = -0.4", "it must be above 0"),
+        ("leg_m = 0.542", "leg_m = 0.3", "leg_m is 0.3; it must be from 0.475 to 1.0 m"),
+        ("leg_m = 0.542", "leg_m = 1e-320", "leg_m is 1e-320"),
         ("error = 0.4", "error = 0.0", "it must be above 0"),
         ("value = 31.29", "value = nan", "value is 'nan'; it must be a finite number"),
         ('source = "table1"', 'source = "rumour"', "source is 'rumour'"),
