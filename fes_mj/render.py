@@ -83,7 +83,7 @@ def scenes(run: Simulation, steps: NDArray[np.int64]) -> Iterator[Picture]:
             mujoco.mj_comPos(model, data)
             mujoco.mj_camlight(model, data)
             renderer.update_scene(data, camera)
-            yield labels.draw(renderer.render(), data, renderer.scene.camera[0])
+            yield labels.draw(renderer.render(), data, renderer.scene.camera)
 
 
 def _camera(run: Simulation) -> mujoco.MjvCamera:
@@ -133,22 +133,23 @@ class _Labels:
             targets[body] = data.body(body if body == "crank" else self._prefix + body).xipos
         return targets
 
-    def draw(self, picture: Picture, data: mujoco.MjData, camera: Any) -> Picture:
-        """The picture with the names written on it."""
+    def draw(self, picture: Picture, data: mujoco.MjData, eyes: Any) -> Picture:
+        """The picture with the names written on it; eyes: the scene's two cameras, between which it was taken."""
         from PIL import Image, ImageDraw
 
         image = Image.fromarray(picture)
         draw = ImageDraw.Draw(image)
         for name, target in self._targets(data).items():
-            spot = _project(self._spots[name], camera)
-            draw.line([spot, _project(target, camera)], fill=LEADER_COLOUR, width=2)
+            spot, (x, y) = _project(self._spots[name], eyes), _project(target, eyes)
+            draw.line([spot, (x, y)], fill=LEADER_COLOUR, width=2)
+            draw.ellipse([x - 4, y - 4, x + 4, y + 4], fill="white", outline=LEADER_COLOUR, width=2)
             draw.text(spot, name, font=self._font, fill=LABEL_COLOUR, anchor="mm", stroke_width=6, stroke_fill="white")
         return np.asarray(image)
 
 
-def _project(point: NDArray[np.float64], camera: Any) -> tuple[float, float]:
-    """Pixel of a point in the picture of an MjvGLCamera."""
-    forward, up = np.array(camera.forward), np.array(camera.up)
-    offset = point - np.array(camera.pos)
+def _project(point: NDArray[np.float64], eyes: Any) -> tuple[float, float]:
+    """Pixel of a point in a picture taken from between two MjvGLCameras."""
+    forward, up = np.array(eyes[0].forward), np.array(eyes[0].up)
+    offset = point - np.mean([eye.pos for eye in eyes], axis=0)
     scale = HEIGHT / 2 / np.tan(np.radians(FIELD_OF_VIEW / 2)) / (offset @ forward)
     return SCENE_WIDTH / 2 + scale * (offset @ np.cross(forward, up)), HEIGHT / 2 - scale * (offset @ up)
