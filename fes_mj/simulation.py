@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
+import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
 from fes_mj.design import Design
 from fes_mj.mjcf import LEGS, Leg, build_mjcf, steps_per_turn
 from fes_mj.segments import GRAVITY
-from fes_mj.stepping import LoopMaker, feedback_loop, run_loop
+from fes_mj.stepping import LoopMaker, Run, feedback_loop, run_loop
 from fes_mj.torque import JOINTS, JointMoments, TorqueMap
 
 
@@ -109,7 +111,23 @@ def simulate(
     model, steps = spec.compile(), turns * steps_per_turn(cadence, timestep)
     drives, torque_map = joint_drives(LEGS[legs]), TorqueMap(moments)
     run = run_loop(model, make_loop(torque_map, drives), steps)
+    return Simulation(
+        design=design,
+        moments=moments,
+        cadence=cadence,
+        timestep=model.opt.timestep,
+        turns=turns,
+        legs=LEGS[legs],
+        mass_scale=mass_scale,
+        gravity=gravity,
+        **_measured(model, run, torque_map, drives, steps),
+    )
 
+
+def _measured(
+    model: mujoco.MjModel, run: Run, torque_map: TorqueMap, drives: dict[str, str], steps: int
+) -> dict[str, Any]:
+    """The measured fields of Simulation, out of the records of a run."""
     column = {model.sensor(i).name: int(model.sensor(i).adr[0]) for i in range(model.nsensor)}
     rows, loops = run.sensors[:steps], [model.equality(i).name for i in range(model.neq)]
     forces, closed = run.fields["efc_force"], [loop for loop in loops if model.equality(loop).active0]
@@ -123,30 +141,22 @@ def simulate(
         """A moment that is held over each step, times the angle of the step."""
         return float(of @ (at[:-1] + at[1:])) / 2 * model.opt.timestep
 
-    return Simulation(
-        design=design,
-        moments=moments,
-        cadence=cadence,
-        timestep=model.opt.timestep,
-        turns=turns,
-        legs=LEGS[legs],
-        mass_scale=mass_scale,
-        gravity=gravity,
-        crank_angle=angle["crank"],
-        crank_speed=speed["crank"][:steps],
-        crank_moment=crank_moment,
-        joint_angle=angle,
-        joint_speed={name: values[:steps] for name, values in speed.items()},
-        joint_moment=moment,
-        loop_gap={loop: np.linalg.norm(rows[:, (at := column[f"{loop}_gap"]) : at + 3], axis=1) for loop in loops},
-        loop_force={loop: forces[:, 3 * i] + 1j * forces[:, 3 * i + 2] for i, loop in enumerate(closed)},
-        energy=Energy(
+    return {
+        "crank_angle": angle["crank"],
+        "crank_speed": speed["crank"][:steps],
+        "crank_moment": crank_moment,
+        "joint_angle": angle,
+        "joint_speed": {name: values[:steps] for name, values in speed.items()},
+        "joint_moment": moment,
+        "loop_gap": {loop: np.linalg.norm(rows[:, (at := column[f"{loop}_gap"]) : at + 3], axis=1) for loop in loops},
+        "loop_force": {loop: forces[:, 3 * i] + 1j * forces[:, 3 * i + 2] for i, loop in enumerate(closed)},
+        "energy": Energy(
             joint_work=sum(work(moment[name], speed[name]) for name in drives),
             crank_work=work(crank_moment, speed["crank"]),
             kinetic=run.end_energy[1] - run.start_energy[1],
             potential=run.end_energy[0] - run.start_energy[0],
         ),
-    )
+    }
 
 
 def joint_drives(legs: tuple[Leg, ...]) -> dict[str, str]:
