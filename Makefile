@@ -1,26 +1,28 @@
-# `make demo` and `make test` are all the set-up there is; both first create .venv with every pinned dependency.
+# `make demo` and `make test` are all the set-up there is: each first makes .venv with the pinned packages it needs.
 PYTHON ?= python3
 VENV ?= .venv
 BIN = $(VENV)/bin
-EXTRAS = video,optimize,cluster,report,test,lint
+EVERYTHING = video,optimize,cluster,report,test,lint
+PYTEST = $(BIN)/python -m pytest --numprocesses auto --dist worksteal
 
 .PHONY: demo test test-long lint format benchmark catalogue reproduce verification models readers clean
 
-demo: $(VENV)/.ready
+demo: $(VENV)/.for-demo
 	mkdir -p demo
 	$(BIN)/fes_mj simulate d1 --render demo/d1.mp4 --out demo
 	@echo "Look at demo/d1.mp4; the numbers are in demo/d1-p1p2.json and demo/d1-p1p2.csv, the model in demo/d1-p1p2.xml."
 
 test: $(VENV)/.ready
-	$(BIN)/python -m pytest -m "not long"
+	$(PYTEST) -m "not long"
 
 test-long: $(VENV)/.ready
-	$(BIN)/python -m pytest -m long
+	$(PYTEST) -m long
 
 lint: $(VENV)/.ready
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/mypy
+	$(BIN)/lint-imports
 
 format: $(VENV)/.ready
 	$(BIN)/ruff format .
@@ -28,7 +30,8 @@ format: $(VENV)/.ready
 
 benchmark: $(VENV)/.ready
 	$(BIN)/pip install --quiet -c constraints.txt -e '.[benchmark]'
-	$(BIN)/python tools/benchmark.py
+	$(BIN)/python -m tools.benchmark
+	$(BIN)/python -m tools.benchmark_start
 	$(BIN)/python -m tools.benchmark_optimization
 
 # Every check on every design, refined, with all faults injected: results/verification.md
@@ -52,11 +55,13 @@ models: $(VENV)/.ready
 readers: $(VENV)/.ready
 	$(BIN)/python tools/conformance.py --build
 
-$(VENV)/.ready: pyproject.toml constraints.txt
+$(VENV)/.for-demo: WANTED = video
+$(VENV)/.ready: WANTED = $(EVERYTHING)
+$(VENV)/.for-demo $(VENV)/.ready: pyproject.toml constraints.txt
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
 		{ echo "Python 3.11 or newer is needed; name one with make PYTHON=python3.12 ..."; exit 1; }
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/pip install --quiet -c constraints.txt -e '.[$(EXTRAS)]'
+	$(BIN)/pip install --quiet -c constraints.txt -e '.[$(WANTED)]'
 	# OpenGL for machines without any: only the library inside this wheel is used, so its own dependencies stay out
 	-@[ "$$(uname -sm)" != "Linux x86_64" ] || $(BIN)/pip install --quiet --no-deps -c constraints.txt lavavu-osmesa
 	touch $@

@@ -9,5 +9,5 @@ moments = fes_mj.JointMoments("knee only", crank_angle, np.where(crank_angle < n
 
 for name in ("trt", "d1"):
     static = fes_mj.quasi_static(fes_mj.load_design(name), moments)
-    swing = np.radians(np.ptp(np.degrees(static.knee_angle)))
+    swing = np.ptp(static.joint_angle.knee)
     print(f"{name}: {static.work_per_turn:.2f} J per turn; 20 N m over the knee's swing are {20 * swing:.2f} J")

@@ -5,15 +5,15 @@ import numpy as np
 import fes_mj
 from fes_mj.inverse_dynamics import body_loads
 from fes_mj.kinematics import solve
-from fes_mj.statics import equilibrium, joint_moments
-from fes_mj.stepping import FORCE_EVERY
+from fes_mj.simulation.stepping import FORCE_EVERY
+from fes_mj.statics import equilibrium
 
 design, moments = fes_mj.load_design("r1"), fes_mj.load_moments("p1p3")
 static = fes_mj.quasi_static(design, moments)
 run = fes_mj.simulate(design, moments)
 
 motion = solve(design, run.crank_angle[::FORCE_EVERY])
-_, reactions = equilibrium(motion, *joint_moments(motion, moments), body_loads(motion, run.cadence))
+_, reactions = equilibrium(motion, static.torque.along(motion, run.cadence), body_loads(motion, run.cadence))
 for name, force in (
     ("quasi-static", static.reactions["pedal"]),
     ("with masses and weight", reactions["pedal"]),

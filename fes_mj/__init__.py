@@ -2,30 +2,40 @@
 
 from __future__ import annotations
 
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from fes_mj.design import Design as Design
-from fes_mj.design import Linkage as Linkage
-from fes_mj.design import Rider as Rider
-from fes_mj.design_file import load_design as load_design
-from fes_mj.errors import AssemblyError as AssemblyError
-from fes_mj.errors import InputError as InputError
-from fes_mj.statics import quasi_static as quasi_static
-from fes_mj.torque import JointMoments as JointMoments
-from fes_mj.torque import load_moments as load_moments
-
 if TYPE_CHECKING:
+    from fes_mj.crosscheck import Case as Case
     from fes_mj.crosscheck import cross_check as cross_check
-    from fes_mj.mjcf import build_mjcf as build_mjcf
-    from fes_mj.simulation import simulate as simulate
+    from fes_mj.design import Design as Design
+    from fes_mj.design import Linkage as Linkage
+    from fes_mj.design import Rider as Rider
+    from fes_mj.design_file import load_design as load_design
+    from fes_mj.errors import AssemblyError as AssemblyError
+    from fes_mj.errors import InputError as InputError
+    from fes_mj.moments import JointMoments as JointMoments
+    from fes_mj.moments import load_moments as load_moments
+    from fes_mj.simulation.bench import simulate as simulate
+    from fes_mj.simulation.mjcf import build_mjcf as build_mjcf
+    from fes_mj.statics import quasi_static as quasi_static
 
-# These need MuJoCo, which is imported when they are first used: statics stay instant.
-_ON_USE = {"cross_check": "crosscheck", "build_mjcf": "mjcf", "simulate": "simulation"}
+# Imported when first used: help needs no numpy, statics no MuJoCo.
+_PUBLIC = {
+    "crosscheck": ("Case", "cross_check"),
+    "design": ("Design", "Linkage", "Rider"),
+    "design_file": ("load_design",),
+    "errors": ("AssemblyError", "InputError"),
+    "moments": ("JointMoments", "load_moments"),
+    "simulation.bench": ("simulate",),
+    "simulation.mjcf": ("build_mjcf",),
+    "statics": ("quasi_static",),
+}
+_MODULE = {name: module for module, names in _PUBLIC.items() for name in names}
+__all__ = [*_MODULE]
 
 
 def __getattr__(name: str) -> Any:
-    if name not in _ON_USE:
+    if name not in _MODULE:
         raise AttributeError(f"module 'fes_mj' has no attribute {name!r}")
-    from importlib import import_module
-
-    return getattr(import_module(f"fes_mj.{_ON_USE[name]}"), name)
+    return getattr(import_module(f"fes_mj.{_MODULE[name]}"), name)

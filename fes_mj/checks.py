@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 import difflib
-import tomllib
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from fes_mj.errors import InputError
+from fes_mj.files import read_toml
 
 _FILE = Path(__file__).parent / "data" / "checks.toml"
 
 
 @dataclass(frozen=True)
-class Criterion:
+class Definition:
     """One row of data/checks.toml."""
 
     name: str
@@ -48,25 +48,29 @@ class Check(NamedTuple):
             return self.value / self.limit
         return 0.0 if self.ok else float("inf")
 
+    def as_json(self) -> dict[str, Any]:
+        """The check as JSON names it."""
+        return self._asdict() | {"ok": self.ok}
+
 
 @cache
-def criteria() -> dict[str, Criterion]:
+def definitions() -> dict[str, Definition]:
     """All checks by name, in the order of the file."""
-    rows = tomllib.loads(_FILE.read_text(encoding="utf-8"))
-    return {name: Criterion(name, **row) for name, row in rows.items()}
+    rows = read_toml(_FILE, "checks").content
+    return {name: Definition(name, **row) for name, row in rows.items()}
 
 
 def check(name: str, value: float, subject: str = "") -> Check:
     """A measured value beside the limit that its name stands for."""
-    criterion = criteria()[name]
-    return Check(name, float(value), criterion.limit, criterion.unit, subject)
+    definition = definitions()[name]
+    return Check(name, float(value), definition.limit, definition.unit, subject)
 
 
-def find(name: str) -> Criterion:
-    """The criterion of a name, however it is spaced. Raises InputError, with the nearest names, if there is none."""
+def find(name: str) -> Definition:
+    """The check of a name, however it is spaced. Raises InputError, with the nearest names, if there is none."""
     key = name.strip().lower().replace(" ", "_").replace("-", "_")
-    if key not in criteria():
-        near = difflib.get_close_matches(key, criteria(), n=3)
-        hint = f"did you mean {' or '.join(near)}?" if near else f"it must be one of {', '.join(criteria())}"
+    if key not in definitions():
+        near = difflib.get_close_matches(key, definitions(), n=3)
+        hint = f"did you mean {' or '.join(near)}?" if near else f"it must be one of {', '.join(definitions())}"
         raise InputError(f"{name}: no such check; {hint}")
-    return criteria()[key]
+    return definitions()[key]

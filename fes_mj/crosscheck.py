@@ -1,19 +1,30 @@
-"""Dynamic against static: what is compared, the limits, the verdict."""
+"""Dynamic against static: one measured case, what is compared in it, the limits, the verdict."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field
+from functools import cached_property
+from importlib.metadata import version
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fes_mj import kinematics
+from fes_mj.arrays import ComplexArray, FloatArray
 from fes_mj.checks import Check, check
 from fes_mj.design import Design
-from fes_mj.inverse_dynamics import crank_moment
-from fes_mj.simulation import Simulation, simulate
-from fes_mj.statics import QuasiStatic, quasi_static
-from fes_mj.torque import JointMoments
+from fes_mj.files import csv_text
+from fes_mj.geometry import require_assembly
+from fes_mj.inverse_dynamics import body_loads
+from fes_mj.joints import PerJoint
+from fes_mj.kinematics import Motion
+from fes_mj.moments import JointMoments
+from fes_mj.segments import GRAVITY
+from fes_mj.simulation.bench import Simulation, simulate
+from fes_mj.simulation.appearance import Spec
+from fes_mj.simulation.mjcf import build_mjcf
+from fes_mj.statics import TURN_POINTS, Load, QuasiStatic, equilibrium, virtual_work
+from fes_mj.torque_map import TorqueMap, torque_map
 
 # A leg that delivers less than this is held to the limits of this much: what discretisation leaves behind does not
 # vanish with the mean, the masses swing a hundred watts to and fro all the same.
@@ -21,29 +32,125 @@ LEAST_POWER = 10.0  # W
 # The near-massless variant keeps so much of all masses that inertia adds this power to the quasi-static curve. With
 # less, the loops, whose stiffness MuJoCo scales with the masses, give way to the jumps of the torque map.
 INERTIA_POWER_RMS = 0.03  # W
-# The simulation's error is of first order in its step, and grows with how sharply a design turns its links round. Where
-# the default step leaves a check failing, a quarter of it is tried, this often; what then disagrees, disagrees.
-REFINEMENTS = 2
 
 
-@dataclass(frozen=True)
-class CrossCheck:
-    """A simulation beside the references it was checked against."""
+@dataclass(frozen=True, eq=False)
+class Case:
+    """A design under joint moments at a cadence (rad/s, by default Eq. 16), and all that was measured of it.
 
-    simulation: Simulation
-    massless: Simulation
-    static: QuasiStatic
-    checks: tuple[Check, ...]
-    refinements: int = 0  # how often the default step was quartered
+    Everything is computed when it is first asked for, once. The methods up to `run` are the steps of the pipeline; a
+    subclass that replaces one of them is a case with a fault. timestep: s, by default chosen by time_step.
+    """
+
+    design: Design
+    moments: JointMoments
+    cadence: float = 0.0
+    timestep: float | None = None
+    turns: int = 1
+    legs: int = 1
+    label: str = field(default="", kw_only=True)
+
+    def __post_init__(self) -> None:
+        if not self.cadence:
+            object.__setattr__(self, "cadence", self.design.linkage.cadence)
 
     @property
-    def agrees(self) -> bool:
-        return all(each.ok for each in self.checks)
+    def name(self) -> str:
+        """Design and moments."""
+        return self.label or f"{self.design.name} {self.moments.name}"
+
+    # The steps of the pipeline.
+
+    @cached_property
+    def torque(self) -> TorqueMap:
+        return torque_map(self.moments)
+
+    def motion(self, crank_angle: FloatArray) -> Motion:
+        """Kinematics at crank angles, rad."""
+        return kinematics.solve(self.design, crank_angle)
+
+    def joint_moment(self, motion: Motion) -> PerJoint[FloatArray]:
+        """Knee and hip moment along a motion, N m."""
+        return self.torque.along(motion, self.cadence)
+
+    def loads(self, motion: Motion, mass_scale: float = 1.0, gravity: float = GRAVITY) -> dict[str, Load]:
+        """Weight and inertia along a motion."""
+        return body_loads(motion, self.cadence, mass_scale, gravity)
+
+    def equilibrium(
+        self, motion: Motion, joint_moment: PerJoint[FloatArray], loads: dict[str, Load] | None = None
+    ) -> tuple[FloatArray, dict[str, ComplexArray]]:
+        """Crank moment and reactions by free-body equilibrium."""
+        return equilibrium(motion, joint_moment, loads)
+
+    def edit_model(self, spec: Spec) -> None:
+        """Change the MuJoCo model before it is compiled; nothing is changed here."""
+
+    def run(self, **options: Any) -> Simulation:
+        """Simulate with these options of bench.simulate instead of the case's own."""
+        own = {"cadence": self.cadence, "timestep": self.timestep, "turns": self.turns, "legs": self.legs}
+        return simulate(self.design, self.moments, **own | options, torque=self.torque, edit=self.edit_model)
+
+    # What is measured.
+
+    def spec(self) -> Spec:
+        """The MuJoCo model of one leg, not drawn."""
+        spec = build_mjcf(self.design, cadence=self.cadence, timestep=self.timestep, drawn=False)
+        self.edit_model(spec)
+        return spec
+
+    @cached_property
+    def static(self) -> QuasiStatic:
+        """The quasi-static turn. Raises AssemblyError if the linkage does not close."""
+        return self.static_at(TURN_POINTS)
+
+    def static_at(self, points: int) -> QuasiStatic:
+        """The quasi-static turn at another number of crank angles."""
+        require_assembly(self.design)
+        motion = self.motion(np.linspace(0, 2 * np.pi, points, endpoint=False))
+        joint_moment = self.joint_moment(motion)
+        return QuasiStatic(motion, self.torque, self.cadence, joint_moment, *self.equilibrium(motion, joint_moment))
+
+    @cached_property
+    def simulation(self) -> Simulation:
+        """The run with full masses. Raises UnstableError if it breaks down."""
+        return self.run()
+
+    @cached_property
+    def massless(self) -> Simulation:
+        """The run with almost no masses and no weight."""
+        return self.run(mass_scale=self.near_massless, gravity=0.0)
+
+    @cached_property
+    def near_massless(self) -> float:
+        """Factor on the masses at which inertia, without weight, adds INERTIA_POWER_RMS to the quasi-static power."""
+        massive = self.crank_moment(self.static.motion, gravity=0.0)
+        inertia_power = self.cadence * np.sqrt(np.mean((massive - self.static.crank_moment) ** 2))
+        return float(min(1.0, INERTIA_POWER_RMS / inertia_power))
+
+    def crank_moment(self, motion: Motion, mass_scale: float = 1.0, gravity: float = GRAVITY) -> FloatArray:
+        """Exact crank moment of one leg at constant speed, N m, without MuJoCo (inverse_dynamics.crank_moment)."""
+        return virtual_work(motion, self.joint_moment(motion), self.loads(motion, mass_scale, gravity))
+
+    def reference_power(self, run: Simulation | None = None, mass_scale: float | None = None) -> FloatArray:
+        """Exact crank power of all legs at the crank angles of a run, W; mass_scale 0 is the quasi-static curve."""
+        run = run or self.simulation
+        scale = run.mass_scale if mass_scale is None else mass_scale
+        legs = (self.crank_moment(self.motion(run.crank_angle - leg.lag), scale, run.gravity) for leg in run.legs)
+        return np.asarray(self.cadence * np.sum([*legs], axis=0))
+
+    # What is concluded.
+
+    @property
+    def power_scale(self) -> float:
+        """What the relative limits refer to: the mean power of one leg, but no less than LEAST_POWER, W."""
+        return max(abs(self.static.power_mean), LEAST_POWER)
 
     @property
     def relative_difference(self) -> float:
-        """Mean power, dynamic minus static, relative to static."""
-        return relative_difference(self.simulation.power_mean, self.static.power_mean)
+        """Mean power, dynamic minus static, relative to static; NaN for a static mean of zero."""
+        dynamic, static = self.simulation.power_mean, self.static.power_mean
+        return (dynamic - static) / abs(static) if static else np.nan
 
     @property
     def difference_text(self) -> str:
@@ -51,6 +158,69 @@ class CrossCheck:
         if np.isfinite(self.relative_difference):
             return f"{100 * self.relative_difference:+.4f} %"
         return f"{self.simulation.power_mean - self.static.power_mean:+.4f} W"
+
+    def check(self, name: str, value: float) -> Check:
+        """A measured value of this case beside its limit."""
+        return check(name, value, self.name)
+
+    @cached_property
+    def checks(self) -> tuple[Check, ...]:
+        """The cross-check."""
+        run, power = self.simulation, self.power_scale
+        duration = len(run.crank_angle) * run.timestep
+        return (
+            self.check("mean_power", abs(run.power_mean - self.static.power_mean) / power),
+            self.check("loop_gap", run.loop_gap_max),
+            self.check("cadence_ripple", run.cadence_ripple),
+            self.check("inverse_dynamics", self._rms_per_leg(run, None)),
+            self.check("massless_statics", self._rms_per_leg(self.massless, 0.0)),
+            self.check("energy_balance", abs(run.energy.lost) / (power * duration * self.legs)),
+        )
+
+    def _rms_per_leg(self, run: Simulation, mass_scale: float | None) -> float:
+        difference = run.power - self.reference_power(run, mass_scale)
+        return float(np.sqrt(np.mean(difference**2))) / len(run.legs)
+
+    @property
+    def agrees(self) -> bool:
+        return all(each.ok for each in self.checks)
+
+    def summary(self) -> dict[str, Any]:
+        """The result as JSON names and units it."""
+        run = self.simulation
+        return self.static.summary() | {
+            "power_mean_W": run.power_mean,
+            "work_per_turn_J": 2 * np.pi * run.power_mean / run.cadence,
+            "knee_range_deg": run.joint_range_deg.knee,
+            "hip_range_deg": run.joint_range_deg.hip,
+            "static_power_mean_W": self.static.power_mean,
+            "relative_difference": self.relative_difference,
+            "loop_gap_max_m": run.loop_gap_max,
+            "cadence_ripple": run.cadence_ripple,
+            "agrees": self.agrees,
+            "checks": [each.as_json() for each in self.checks],
+            "legs": len(run.legs),
+            "turns": run.turns,
+            "timestep_s": run.timestep,
+            "loop_force_max_N": {loop: float(np.abs(force).max()) for loop, force in run.loop_force.items()},
+            "energy_J": run.energy.as_json(),
+            "versions": {name: version(name) for name in ("fes-mj", "mujoco", "numpy")},
+        }
+
+    def cycle_csv(self) -> str:
+        """The measured turns as CSV, a row a time step."""
+        run = self.simulation
+        return csv_text(
+            {
+                "crank_angle_deg": np.degrees(run.crank_angle),
+                "crank_power_W": run.power,
+                "inverse_dynamics_power_W": self.reference_power(),
+                "quasi_static_power_W": self.reference_power(mass_scale=0.0),
+                **{f"{name}_deg": np.degrees(angle) for name, angle in run.joint_angle.items()},
+                **{f"{name}_Nm": moment for name, moment in run.joint_moment.items()},
+                **{f"{name}_gap_m": gap for name, gap in run.loop_gap.items()},
+            }
+        )
 
 
 def cross_check(
@@ -61,79 +231,8 @@ def cross_check(
     timestep: float | None = None,
     turns: int = 1,
     legs: int = 1,
-) -> CrossCheck:
+) -> Case:
     """Simulate with full masses and nearly without, solve statics, compare (arguments as `simulate`)."""
-    static = quasi_static(design, moments, cadence)
-    options: dict[str, Any] = {"cadence": cadence, "timestep": timestep, "turns": turns, "legs": legs}
-    simulation = simulate(design, moments, **options)
-    massless = simulate(design, moments, **options, mass_scale=near_massless(static), gravity=0.0)
-    power = power_scale(static)
-    duration = len(simulation.crank_angle) * simulation.timestep
-    checks = (
-        check("mean_power", abs(simulation.power_mean - static.power_mean) / power),
-        check("loop_gap", simulation.loop_gap_max),
-        check("cadence_ripple", simulation.cadence_ripple),
-        check("inverse_dynamics", _rms_per_leg(simulation, reference_power(simulation))),
-        check("massless_statics", _rms_per_leg(massless, reference_power(massless, 0.0))),
-        check("energy_balance", abs(simulation.energy.lost) / (power * duration * legs)),
-    )
-    return CrossCheck(simulation, massless, static, checks)
-
-
-def refined_cross_check(design: Design, moments: JointMoments, **options: Any) -> CrossCheck:
-    """cross_check (same arguments but timestep) at the default step, and at quarters of it while a check fails."""
-    result = cross_check(design, moments, **options)
-    for count in range(1, REFINEMENTS + 1):
-        if result.agrees:
-            break
-        finer = cross_check(design, moments, timestep=result.simulation.timestep / 4, **options)
-        result = replace(finer, refinements=count)
-    return result
-
-
-def near_massless(static: QuasiStatic) -> float:
-    """Factor on the masses at which inertia, without weight, adds INERTIA_POWER_RMS to the quasi-static power."""
-    massive = crank_moment(static.design, static.moments, static.cadence, static.crank_angle, gravity=0.0)
-    inertia_power = static.cadence * np.sqrt(np.mean((massive - static.crank_moment) ** 2))
-    return float(min(1.0, INERTIA_POWER_RMS / inertia_power))
-
-
-def power_scale(static: QuasiStatic) -> float:
-    """What the relative limits refer to: the mean power of one leg, but no less than LEAST_POWER, W."""
-    return max(abs(static.power_mean), LEAST_POWER)
-
-
-def relative_difference(value: float, reference: float) -> float:
-    """(value - reference) / |reference|; NaN for a zero reference."""
-    return (value - reference) / abs(reference) if reference else np.nan
-
-
-def reference_power(simulation: Simulation, mass_scale: float | None = None) -> NDArray[np.float64]:
-    """Exact crank power of all legs at the simulated crank angles, W; mass_scale 0 is the quasi-static curve."""
-    scale = simulation.mass_scale if mass_scale is None else mass_scale
-    angle, cadence = simulation.crank_angle, simulation.cadence
-    legs = (
-        crank_moment(simulation.design, simulation.moments, cadence, angle - leg.lag, scale, simulation.gravity)
-        for leg in simulation.legs
-    )
-    return cadence * np.sum([*legs], axis=0)
-
-
-def cycle_csv(result: CrossCheck) -> str:
-    """The measured turns as CSV, a row a time step."""
-    run = result.simulation
-    columns = {
-        "crank_angle_deg": np.degrees(run.crank_angle),
-        "crank_power_W": run.power,
-        "inverse_dynamics_power_W": reference_power(run),
-        "quasi_static_power_W": reference_power(run, 0.0),
-        **{f"{name}_deg": np.degrees(angle) for name, angle in run.joint_angle.items()},
-        **{f"{name}_Nm": moment for name, moment in run.joint_moment.items()},
-        **{f"{name}_gap_m": gap for name, gap in run.loop_gap.items()},
-    }
-    lines = [",".join(f"{value:.9g}" for value in row) for row in np.column_stack([*columns.values()]).tolist()]
-    return "\n".join([",".join(columns), *lines]) + "\n"
-
-
-def _rms_per_leg(simulation: Simulation, reference: NDArray[np.float64]) -> float:
-    return float(np.sqrt(np.mean((simulation.power - reference) ** 2))) / len(simulation.legs)
+    case = Case(design, moments, cadence or 0.0, timestep, turns, legs)
+    _ = case.checks
+    return case

@@ -121,7 +121,7 @@ class Design:
 
     @property
     def knee_to_pedal(self) -> Any:
-        """Length R3 of shank and boot as one link, m."""
+        """Length R3 of shank and boot as one link, m; of a batch an array."""
         return np.hypot(self.rider.shank, self.linkage.foot)
 
     @property

@@ -1,7 +1,9 @@
-"""The two ways a request can be refused; the command line turns each into one message and an exit code."""
+"""The ways a request can be refused; the command line turns each into one message and an exit code."""
+
+from __future__ import annotations
 
 from importlib import import_module
-from typing import Any
+from types import ModuleType
 
 
 class InputError(ValueError):
@@ -20,10 +22,13 @@ class UnstableError(RuntimeError):
     """A simulation that broke down (exit code 1)."""
 
 
-def import_extra(module: str, extra: str) -> Any:
-    """Import a module of an optional package. Raises MissingPartError with the command that installs it."""
+def require_extra(extra: str, *modules: str) -> ModuleType:
+    """Import modules of an optional package and return the first.
+
+    Raises MissingPartError with the command that installs the one that is not there.
+    """
     try:
-        return import_module(module)
-    except ModuleNotFoundError:
-        package = module.partition(".")[0]
+        return [import_module(module) for module in modules][0]
+    except ModuleNotFoundError as error:
+        package = (error.name or modules[0]).partition(".")[0]
         raise MissingPartError(f"{package} is not installed; it comes with: pip install 'fes-mj[{extra}]'") from None

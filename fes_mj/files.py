@@ -1,17 +1,163 @@
-"""Output files that appear whole or not at all: written beside their place, then renamed into it."""
+"""All reading and writing of files: inputs with one wording for every refusal, outputs whole or not at all."""
 
 from __future__ import annotations
 
+import csv
 import json
 import math
 import os
 import tempfile
-from collections.abc import Iterator
+import tomllib
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 from fes_mj.errors import InputError
+
+LARGEST_INPUT = 64 * 2**20  # bytes; a day of measured moments is smaller
+
+
+def read_text(path: Path, what: str) -> str:
+    """The text of a UTF-8 file, with or without a byte order mark. Raises InputError naming the file and the reason."""
+    try:
+        with path.open("rb") as file:
+            data = file.read(LARGEST_INPUT + 1)
+    except OSError as error:
+        raise InputError(f"{path}: cannot read the {what}: {error.strerror}") from None
+    except ValueError:  # a NUL in the name
+        raise InputError(f"{str(path)!r}: cannot read the {what}: no file can have this name") from None
+    if len(data) > LARGEST_INPUT:
+        raise InputError(f"{path}: cannot read the {what}: it is larger than {LARGEST_INPUT >> 20} MiB")
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        raise InputError(f"{path}: the {what} is not UTF-8 text") from None
+
+
+@dataclass(frozen=True)
+class Section:
+    """A table of a TOML file whose keys are read one by one; every refusal names file, key, value and what is allowed."""
+
+    path: Path
+    name: str  # "" for the file itself
+    content: dict[str, Any]
+
+    def label(self, key: str) -> str:
+        """The key as a user finds it in the file."""
+        return f"{self.name}.{key}" if self.name else key
+
+    def refuse(self, key: str, value: object, allowed: str) -> NoReturn:
+        """Raise InputError for a value that is not allowed."""
+        raise InputError(f"{self.path}: {self.label(key)} is {value!r}; it must be {allowed}")
+
+    def only(self, allowed: Iterable[str]) -> None:
+        """Refuse keys that nobody reads."""
+        known = [*allowed]
+        for key in self.content:
+            if key not in known:
+                raise InputError(f"{self.path}: unknown key {self.label(key)}; allowed here: {', '.join(known)}")
+
+    def require(self, keys: Iterable[str], needs: str) -> None:
+        """Refuse a table in which a key is missing."""
+        for key in keys:
+            if key not in self.content:
+                raise InputError(f"{self.path}: {self.label(key)} is missing; {needs}")
+
+    def section(self, key: str) -> Section:
+        """A table below this one, empty if it is not there."""
+        value = self.content.get(key, {})
+        if not isinstance(value, dict):
+            self.refuse(key, value, f"a table [{self.label(key)}]")
+        return Section(self.path, self.label(key), value)
+
+    def choice(self, key: str, options: Iterable[str], default: str | None = None) -> str:
+        """One of some words."""
+        value, known = self.content.get(key, default), [*options]
+        if not isinstance(value, str) or value not in known:
+            self.refuse(key, value, f"one of {', '.join(known)}")
+        return value
+
+    def whole(self, key: str, default: int) -> int:
+        """A whole number from 1."""
+        value = self.content.get(key, default)
+        if isinstance(value, bool) or not isinstance(value, int) or value < 1:
+            self.refuse(key, value, "a whole number from 1")
+        return value
+
+    def number(self, key: str, low: float = -math.inf, high: float = math.inf, allowed: str = "a number") -> float:
+        """A finite number within bounds."""
+        value = self.content[key]
+        if not (is_number(value) and math.isfinite(value) and low <= value <= high):
+            self.refuse(key, value, allowed)
+        return float(value)
+
+    def ascending_pair(self, key: str, low: float = -math.inf, high: float = math.inf) -> tuple[float, float]:
+        """[lowest, highest], both finite and within bounds."""
+        value = self.content[key]
+        if not (isinstance(value, list) and len(value) == 2 and all(is_number(part) for part in value)):
+            self.refuse(key, value, "[lowest, highest]")
+        for part in value:
+            if not (math.isfinite(part) and low <= part <= high):
+                self.refuse(key, part, "a number" if low == -math.inf else f"from {low:g} to {high:g}")
+        if not value[0] < value[1]:
+            raise InputError(
+                f"{self.path}: {self.label(key)} is {value!r}; "
+                "the bounds contradict each other, the first must be the smaller"
+            )
+        return float(value[0]), float(value[1])
+
+
+def is_number(value: object) -> bool:
+    """Whether a TOML value is a number; true and false are none, nor is an integer that no float can hold."""
+    if isinstance(value, int) and not isinstance(value, bool):
+        return abs(value) < 10**300
+    return isinstance(value, float)
+
+
+def read_toml(path: Path, what: str) -> Section:
+    """A TOML file as the section of its top level. Raises InputError as read_text, and for what is not TOML."""
+    try:
+        return Section(path, "", tomllib.loads(read_text(path, what)))
+    except InputError:
+        raise
+    except (ValueError, RecursionError) as error:  # TOMLDecodeError, numbers of thousands of digits, deep nesting
+        raise InputError(f"{path}: not valid TOML: {error}") from None
+
+
+def read_csv(path: Path, what: str, columns: Sequence[str]) -> Iterator[tuple[int, list[float]]]:
+    """Line number and finite numbers of every row of a CSV file with this header; blank lines are passed over.
+
+    Raises InputError naming file, line, column and value.
+    """
+    lines = read_text(path, what).splitlines()
+    header = [cell.strip() for cell in lines[0].split(",")] if lines else []
+    if header != [*columns]:
+        raise InputError(f"{path}: line 1 is {','.join(header)!r}, the header must be {','.join(columns)!r}")
+    for number, row in enumerate(csv.reader(lines[1:]), 2):
+        if row and len(row) != len(columns):
+            raise InputError(
+                f"{path}: line {number} has {len(row)} values; {len(columns)} are needed: {','.join(columns)}"
+            )
+        if row:
+            yield number, [_cell(path, number, *pair) for pair in zip(columns, row, strict=True)]
+
+
+def _cell(path: Path, line: int, column: str, cell: str) -> float:
+    try:
+        value = float(cell)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise InputError(f"{path}: line {line}: {column} is {cell.strip()!r}; it must be a finite number")
+    return value
+
+
+def csv_text(columns: Mapping[str, Any]) -> str:
+    """Columns of numbers, shape (rows,) each, as CSV with nine digits."""
+    rows = zip(*(getattr(column, "tolist", lambda column=column: column)() for column in columns.values()), strict=True)
+    return "\n".join([",".join(columns), *(",".join(f"{value:.9g}" for value in row) for row in rows)]) + "\n"
 
 
 def require_folder(folder: Path, what: str) -> None:
@@ -21,6 +167,17 @@ def require_folder(folder: Path, what: str) -> None:
         raise InputError(f"{folder}: cannot write {what}: the folder {state}; create it or name another")
     if not os.access(folder, os.W_OK | os.X_OK):
         raise InputError(f"{folder}: cannot write {what}: no permission; name a folder you can write to")
+
+
+def make_folder(folder: Path, what: str) -> None:
+    """Make `folder` in an existing one unless it is there. Raises InputError if that cannot be."""
+    if not folder.exists():
+        require_folder(folder.parent, what)
+        try:
+            folder.mkdir()
+        except OSError as error:
+            raise InputError(f"{folder}: cannot be made: {error.strerror}") from None
+    require_folder(folder, what)
 
 
 def require_writable(path: Path, what: str, suffix: str = "") -> None:
@@ -57,15 +214,15 @@ def write_text(path: Path, text: str) -> None:
         temporary.write_text(text, encoding="utf-8")
 
 
-def json_text(content: dict[str, Any]) -> str:
-    """The object as indented JSON text."""
+def json_text(content: Mapping[str, Any]) -> str:
+    """The object as indented JSON text; arrays become lists, numbers that JSON lacks (NaN, infinity) null."""
     return json.dumps(_plain(content), indent=2, allow_nan=False) + "\n"
 
 
 def _plain(value: Any) -> Any:
     if hasattr(value, "tolist"):
         value = value.tolist()
-    if isinstance(value, dict):
+    if isinstance(value, Mapping):
         return {key: _plain(item) for key, item in value.items()}
     if isinstance(value, (list, tuple)):
         return [_plain(item) for item in value]

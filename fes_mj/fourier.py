@@ -5,13 +5,14 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+
+from fes_mj.arrays import FloatArray
 
 HARMONICS = 24  # beyond the 24th a kernel of length 0.5 has less than 1e-12 of its variance
 TERMS = 2 * HARMONICS + 1  # of one joint
 
 
-def fourier(crank_angle: Any) -> NDArray[np.float64]:
+def fourier(crank_angle: Any) -> FloatArray:
     """1, cos k a, sin k a along a new last axis of size TERMS; crank_angle in rad from top dead centre."""
     angle = np.asarray(crank_angle, float)
     turned = np.empty((*angle.shape, HARMONICS), complex)

@@ -2,17 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
-
-import numpy as np
-from numpy.typing import NDArray
-
-from fes_mj import kinematics
-from fes_mj.design import Design
+from fes_mj.arrays import FloatArray
 from fes_mj.kinematics import Motion
 from fes_mj.segments import GRAVITY, inertias
-from fes_mj.statics import Load, joint_moments, virtual_work
-from fes_mj.torque import JointMoments
+from fes_mj.statics import Load, virtual_work
+from fes_mj.torque_map import TorqueMap
 
 
 def body_loads(motion: Motion, cadence: float, mass_scale: float = 1.0, gravity: float = GRAVITY) -> dict[str, Load]:
@@ -23,20 +17,14 @@ def body_loads(motion: Motion, cadence: float, mass_scale: float = 1.0, gravity:
         loads[body] = Load(
             force=-mass_scale * inertia.mass * (cadence**2 * centre.second + 1j * gravity),
             point=centre,
-            couple=-mass_scale * inertia.moment * cadence**2 * motion.turning[body][1],
+            couple=-mass_scale * inertia.moment * cadence**2 * motion.rotation[body].second,
         )
     return loads
 
 
 def crank_moment(
-    design: Design,
-    moments: JointMoments,
-    cadence: float,
-    crank_angle: Any,
-    mass_scale: float = 1.0,
-    gravity: float = GRAVITY,
-) -> NDArray[np.float64]:
-    """Crank moment of one leg, N m, at the given crank angles (rad, any order); its mean is the quasi-static one."""
-    motion = kinematics.solve(design, crank_angle)
-    knee, hip = joint_moments(motion, moments, cadence)
-    return virtual_work(motion, knee, hip, body_loads(motion, cadence, mass_scale, gravity))
+    motion: Motion, torque: TorqueMap, cadence: float, mass_scale: float = 1.0, gravity: float = GRAVITY
+) -> FloatArray:
+    """Crank moment of one leg along a motion, N m; over a turn its mean is the quasi-static one. cadence: rad/s."""
+    loads = body_loads(motion, cadence, mass_scale, gravity)
+    return virtual_work(motion, torque.along(motion, cadence), loads)

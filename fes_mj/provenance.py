@@ -1,4 +1,4 @@
-"""Where a result comes from: versions, date, command."""
+"""Where a result comes from: versions, command, inputs. No date: the same run gives the same bytes."""
 
 from __future__ import annotations
 
@@ -6,14 +6,13 @@ import hashlib
 import platform
 import sys
 from collections.abc import Iterable
-from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
 
 def provenance(inputs: Iterable[Path] = (), packages: Iterable[str] = ()) -> dict[str, Any]:
-    """Versions (also of `packages`), date (UTC), command line without paths, SHA-256 of every input file by name."""
+    """Versions (also of `packages`), command line without paths, SHA-256 of every input file by name."""
     return {
         "fes_mj": version("fes-mj"),
         "python": platform.python_version(),
@@ -21,7 +20,6 @@ def provenance(inputs: Iterable[Path] = (), packages: Iterable[str] = ()) -> dic
         "numpy": version("numpy"),
         "scipy": version("scipy"),
         **{package: version(package) for package in packages},
-        "date": datetime.now(UTC).isoformat(timespec="seconds"),
         "command": " ".join([_program(Path(sys.argv[0])), *sys.argv[1:]]),
         "inputs": {_name(path): hashlib.sha256(path.read_bytes()).hexdigest() for path in inputs},
     }

@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fes_mj import kinematics
+from fes_mj.arrays import ComplexArray, FloatArray
 from fes_mj.design import BODIES, Design
+from fes_mj.errors import InputError
+from fes_mj.geometry import require_assembly
+from fes_mj.joints import PerJoint
 from fes_mj.kinematics import Jet, Motion
-from fes_mj.torque import JointMoments, TorqueMap, joint_angles
+from fes_mj.moments import JointMoments
+from fes_mj.torque_map import TorqueMap, torque_map
 from fes_mj.uncertainty import power_weights, standard_deviation
+from fes_mj.units import RPM
 
 # Trapezium rule over a turn; against 36,000 points the mean power changes by less than 1e-5 of itself.
 TURN_POINTS = 3600
@@ -22,35 +28,54 @@ TURN_POINTS = 3600
 class Load(NamedTuple):
     """A force (N, complex) at a point of a body, and a couple (N m) on that body, over crank angle."""
 
-    force: Any
+    force: ComplexArray
     point: Jet
-    couple: Any
+    couple: FloatArray
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class QuasiStatic:
     """One turn of the massless model; arrays over crank angle, shape (n,).
 
-    crank_moment (N m, on the load) and reactions come from free-body equilibrium. A reaction is the complex
-    force in N that the first body named by Architecture.joints exerts on the second, by point name.
+    motion: over uniform crank angles of one turn. torque: the map that gave the moments. cadence: rad/s.
+    joint_moment: N m, extension positive. crank_moment (N m, on the load) and reactions come from free-body
+    equilibrium. A reaction is the complex force in N that the first body named by Architecture.joints exerts on the
+    second, by point name.
     """
 
-    design: Design
-    moments: JointMoments
-    cadence: float  # rad/s
-    crank_angle: NDArray[np.float64]  # rad, uniform over one turn
-    knee_angle: NDArray[np.float64]  # rad
-    hip_angle: NDArray[np.float64]  # rad
-    knee_moment: NDArray[np.float64]  # N m, extension positive
-    hip_moment: NDArray[np.float64]
-    crank_moment: NDArray[np.float64]
-    reactions: dict[str, NDArray[np.complex128]]
     motion: Motion
+    torque: TorqueMap
+    cadence: float
+    joint_moment: PerJoint[FloatArray]
+    crank_moment: FloatArray
+    reactions: dict[str, ComplexArray]
 
     @property
-    def power(self) -> NDArray[np.float64]:
+    def design(self) -> Design:
+        return self.motion.design
+
+    @property
+    def moments(self) -> JointMoments:
+        return self.torque.moments
+
+    @property
+    def crank_angle(self) -> FloatArray:
+        """Rad."""
+        return self.motion.crank_angle
+
+    @cached_property
+    def joint_angle(self) -> PerJoint[FloatArray]:
+        """Rad, growing in extension."""
+        return self.motion.joint_angle
+
+    @property
+    def power(self) -> FloatArray:
         """Crank power of one leg, W, shape (n,)."""
         return self.crank_moment * self.cadence
+
+    def power_of(self, joint: str) -> FloatArray:
+        """Power of one joint's moment, W, shape (n,)."""
+        return self.cadence * self.joint_moment[joint] * self.motion.joint_rate[joint]
 
     @property
     def power_mean(self) -> float:
@@ -62,16 +87,50 @@ class QuasiStatic:
         """Work of one leg on the crank in one turn, J; without a torque-velocity relation the same at any cadence."""
         return float(2 * np.pi * self.crank_moment.mean())
 
-    @property
-    def power_weights(self) -> NDArray[np.float64]:
+    @cached_property
+    def power_weights(self) -> FloatArray:
         """Mean power per Fourier coefficient of knee, then hip moment, W/(N m), shape (98,)."""
-        return power_weights(self.motion, self.cadence, self.moments)
+        return power_weights(self.motion, self.cadence, self.torque)
 
     @property
     def power_sd(self) -> float | None:
         """Standard deviation of power_mean, W, by the error of recovered moments; None for a user's own moments."""
         covariance = self.moments.covariance
         return None if covariance is None else standard_deviation(self.power_weights, covariance)
+
+    @property
+    def joint_range_deg(self) -> PerJoint[list[float]]:
+        """Smallest and largest joint angle, deg."""
+        return self.joint_angle.map(lambda angle: [float(np.degrees(f(angle))) for f in (np.min, np.max)])
+
+    @property
+    def notes(self) -> list[str]:
+        """What a reader must know of the result: joint angles for which the torque map has no data."""
+        remarks = []
+        for joint, (low, high) in self.torque.reference.ranges.items():
+            beyond = max(low - self.joint_angle[joint].min(), self.joint_angle[joint].max() - high)
+            if beyond > np.radians(0.01):
+                remarks.append(
+                    f"the {joint} moves {np.degrees(beyond):.1f} deg beyond the range of the moments "
+                    f"({np.degrees(low):.1f} to {np.degrees(high):.1f} deg); the moment at its end is kept there"
+                )
+        return remarks
+
+    def summary(self) -> dict[str, Any]:
+        """The keys that every result of a run has, as JSON names and units them."""
+        relation = self.moments.torque_velocity
+        return {
+            "design": self.design.name,
+            "group": self.moments.name,
+            "torque_velocity": relation.name if relation else None,
+            "cadence_rpm": self.cadence / RPM,
+            "power_mean_W": self.power_mean,
+            "power_sd_W": self.power_sd,
+            "work_per_turn_J": self.work_per_turn,
+            "knee_range_deg": self.joint_range_deg.knee,
+            "hip_range_deg": self.joint_range_deg.hip,
+            "notes": self.notes,
+        }
 
 
 def quasi_static(
@@ -82,86 +141,98 @@ def quasi_static(
     cadence: crank speed in rad/s, by default the design's own (Eq. 16). points: crank angles from 0, uniform.
     Raises AssemblyError if the linkage does not close over the whole turn.
     """
-    kinematics.require_assembly(design)
-    crank_angle = np.linspace(0, 2 * np.pi, points, endpoint=False)
-    motion = kinematics.solve(design, crank_angle)
-    cadence = design.linkage.cadence if cadence is None else cadence
-    knee, hip = joint_moments(motion, moments, cadence)
-    crank_moment, reactions = equilibrium(motion, knee, hip)
-    return QuasiStatic(
-        design=design,
-        moments=moments,
-        cadence=cadence,
-        crank_angle=crank_angle,
-        knee_angle=motion.knee_angle,
-        hip_angle=motion.hip_angle,
-        knee_moment=knee,
-        hip_moment=hip,
-        crank_moment=crank_moment,
-        reactions=reactions,
-        motion=motion,
-    )
+    require_assembly(design)
+    motion = kinematics.solve(design, np.linspace(0, 2 * np.pi, points, endpoint=False))
+    return balance(motion, torque_map(moments), design.linkage.cadence if cadence is None else cadence)
 
 
-def joint_moments(motion: Motion, moments: JointMoments, cadence: Any = None) -> tuple[Any, Any]:
-    """Knee and hip moment, N m, that the torque map gives along a motion at forward crank speed.
+def balance(motion: Motion, torque: TorqueMap, cadence: float) -> QuasiStatic:
+    """The massless turn of a motion over uniform crank angles under a torque map; cadence in rad/s."""
+    joint_moment = torque.along(motion, cadence)
+    return QuasiStatic(motion, torque, cadence, joint_moment, *equilibrium(motion, joint_moment))
 
-    cadence: rad/s, by default the design's own; only its size counts, and only with a torque-velocity relation.
+
+def difference_sd(one: QuasiStatic, other: QuasiStatic) -> float | None:
+    """Standard deviation of one's mean power minus the other's, W; None where nothing is known of the moments' error.
+
+    Both must have been solved with the same moments (InputError otherwise).
     """
-    speed = abs(motion.design.linkage.cadence if cadence is None else cadence)
-    torque_map, angles = TorqueMap(moments), joint_angles(motion)
-    knee, hip = (torque_map.moment(joint, angle, speed * rate) for joint, (angle, rate) in angles.items())
-    return knee, hip
+    return _combined_sd(one, other, 1.0)
 
 
-def virtual_work(motion: Motion, knee: Any, hip: Any, loads: Mapping[str, Load] | None = None) -> Any:
+def ratio_sd(one: QuasiStatic, other: QuasiStatic) -> float | None:
+    """Standard deviation of one's mean power per the other's, to first order; otherwise as difference_sd."""
+    deviation = _combined_sd(one, other, one.power_mean / other.power_mean)
+    return None if deviation is None else deviation / abs(other.power_mean)
+
+
+def _combined_sd(one: QuasiStatic, other: QuasiStatic, factor: float) -> float | None:
+    """Standard deviation of one - factor * other."""
+    covariance = one.moments.covariance
+    if covariance is None or other.moments.covariance is None:
+        return None
+    if covariance is not other.moments.covariance and not np.array_equal(covariance, other.moments.covariance):
+        raise InputError(f"{one.moments.name} and {other.moments.name} are different moments: nothing correlates them")
+    return standard_deviation(one.power_weights - factor * other.power_weights, covariance)
+
+
+def virtual_work(
+    motion: Motion, joint_moment: PerJoint[FloatArray], loads: Mapping[str, Load] | None = None
+) -> FloatArray:
     """Crank moment, N m, by which moments and loads do no net virtual work: exact for any single-crank linkage."""
-    moment = knee * motion.knee_rate + hip * motion.hip_rate
+    rate = motion.joint_rate
+    moment = joint_moment.knee * rate.knee + joint_moment.hip * rate.hip
     for body, load in (loads or {}).items():
-        moment = moment + (np.conj(load.force) * load.point.first).real + load.couple * motion.turning[body][0]
+        moment = moment + (np.conj(load.force) * load.point.first).real + load.couple * motion.rotation[body].first
     return moment
 
 
-def joint_couples(knee: Any, hip: Any) -> dict[str, Any]:
+def joint_couples(joint_moment: PerJoint[FloatArray]) -> dict[str, FloatArray]:
     """Couple of the joint moments on each body, N m: extension turns the thigh forwards, the shank back against it."""
-    return {"thigh": hip + knee, "shank": -knee}
+    return {"thigh": joint_moment.hip + joint_moment.knee, "shank": -joint_moment.knee}
 
 
-def moment_arm(motion: Motion, body: str, point: str) -> Any:
-    """From a body's origin to one of its points, m, complex."""
+def moment_arm(motion: Motion, body: str, point: str) -> ComplexArray:
+    """From a body's origin to one of its points, m."""
     return motion.points[point].value - motion.points[BODIES[body][0]].value
 
 
 def equilibrium(
-    motion: Motion, knee: Any, hip: Any, loads: Mapping[str, Load] | None = None
-) -> tuple[NDArray[np.float64], dict[str, NDArray[np.complex128]]]:
+    motion: Motion,
+    joint_moment: PerJoint[FloatArray],
+    loads: Mapping[str, Load] | None = None,
+    *,
+    couples: Callable[[PerJoint[FloatArray]], dict[str, FloatArray]] = joint_couples,
+    arm: Callable[[Motion, str, str], ComplexArray] = moment_arm,
+) -> tuple[FloatArray, dict[str, ComplexArray]]:
     """Crank moment and joint reactions from three equilibrium equations a body, solved at every crank angle.
 
-    The equations are those of the free-body diagrams of the paper (Eq. 4, 9, 14), with its misprints
-    corrected and the bearings kept as unknowns. Returns as in QuasiStatic.
+    The equations are those of the free-body diagrams of the paper (Eq. 4, 9, 14), with its misprints corrected and the
+    bearings kept as unknowns; couples and arm are the two places of the misprints. Returns as in QuasiStatic.
     """
     architecture = motion.design.linkage.architecture
     bodies, joints = architecture.bodies, architecture.joints
     size, count = 3 * len(bodies), np.size(motion.crank_angle)
     matrix, right = np.zeros((count, size, size)), np.zeros((count, size))
-    couples = joint_couples(knee, hip)
+    couple = couples(joint_moment)
     for row, body in enumerate(bodies):
         for column, (point, pair) in enumerate(joints.items()):
             if body in pair:
                 sign = 1.0 if pair[1] == body else -1.0
-                arm = moment_arm(motion, body, point)
+                lever = arm(motion, body, point)
                 matrix[:, 3 * row, 2 * column] = sign
                 matrix[:, 3 * row + 1, 2 * column + 1] = sign
-                matrix[:, 3 * row + 2, 2 * column] = -sign * arm.imag
-                matrix[:, 3 * row + 2, 2 * column + 1] = sign * arm.real
-        right[:, 3 * row + 2] = -np.asarray(couples.get(body, 0.0))
+                matrix[:, 3 * row + 2, 2 * column] = -sign * lever.imag
+                matrix[:, 3 * row + 2, 2 * column + 1] = sign * lever.real
+        if body in couple:
+            right[:, 3 * row + 2] = -couple[body]
         if loads:
             load, origin = loads[body], motion.points[BODIES[body][0]].value
             right[:, 3 * row] -= load.force.real
             right[:, 3 * row + 1] -= load.force.imag
             right[:, 3 * row + 2] -= load.couple + (np.conj(load.point.value - origin) * load.force).imag
     matrix[:, 3 * bodies.index("crank") + 2, -1] = -1.0  # the load's moment on the crank is minus ours
-    solution: NDArray[np.float64] = np.linalg.solve(matrix, right[..., None])[..., 0].astype(float)
+    solution: FloatArray = np.linalg.solve(matrix, right[..., None])[..., 0].astype(float)
     reactions = {
         point: solution[:, 2 * column] + 1j * solution[:, 2 * column + 1] for column, point in enumerate(joints)
     }

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-import tomllib
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+
+from fes_mj.arrays import FloatArray
+from fes_mj.files import read_toml
 
 
 @dataclass(frozen=True)
@@ -24,15 +26,15 @@ class TorqueVelocity:
     eccentric_plateau: float
     max_speed: dict[str, float]
 
-    def factor(self, joint: str, speed: Any) -> Any:
+    def factor(self, joint: str, speed: Any) -> FloatArray:
         """Moment per moment at rest; speed in rad/s along the moment, negative where it lengthens the muscle."""
         relative = np.asarray(speed) / self.max_speed[joint]
-        return self._hyperbolas(np.clip(relative, 0, 1), np.maximum(-relative, 0))
+        return np.asarray(self._hyperbolas(np.clip(relative, 0, 1), np.maximum(-relative, 0)))
 
     def float_factor(self, joint: str, speed: float) -> float:
         """The same for a plain float, without numpy."""
         relative = speed / self.max_speed[joint]
-        return self._hyperbolas(min(max(relative, 0.0), 1.0), max(-relative, 0.0))
+        return float(self._hyperbolas(min(max(relative, 0.0), 1.0), max(-relative, 0.0)))
 
     def _hyperbolas(self, shortening: Any, lengthening: Any) -> Any:
         """Hill (1938) while shortening, a hyperbola of the same slope at rest while lengthening. One speed is zero."""
@@ -46,5 +48,5 @@ class TorqueVelocity:
 def load_torque_velocity(name: str) -> TorqueVelocity:
     """A relation ("hill") with its parameters of data/torque_velocity.toml."""
     path = Path(__file__).parent / "data" / "torque_velocity.toml"
-    row = tomllib.loads(path.read_text(encoding="utf-8"))[name]
+    row = read_toml(path, "torque-velocity relations").section(name).content
     return TorqueVelocity(name, row["curvature"], row["eccentric_plateau"], row["max_speed_rad_s"])

@@ -5,15 +5,15 @@ import pytest
 from hypothesis import settings
 
 import fes_mj
-from fes_mj.design_file import CATALOGUE
-from fes_mj.torque import GROUPS
+from fes_mj.design_file import DESIGNS
+from fes_mj.moments import GROUPS
 
 # The same examples in every run: a failure can be repeated. `--hypothesis-profile default` looks further.
 settings.register_profile("fes_mj", derandomize=True, deadline=None, max_examples=50)
 settings.load_profile("fes_mj")
 
 
-@pytest.fixture(params=CATALOGUE)
+@pytest.fixture(params=DESIGNS)
 def design(request: pytest.FixtureRequest) -> fes_mj.Design:
     """Each catalogued design in turn."""
     return fes_mj.load_design(request.param)

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from fes_mj import kinematics
 from fes_mj.design import Design, Linkage, Rider
-from fes_mj.torque import JointMoments
+from fes_mj.moments import JointMoments
 
 MARGIN = 0.02  # m, that every dyad stays away from its dead centres
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import fes_mj
-from fes_mj.crosscheck import cross_check, refined_cross_check
+from fes_mj.crosscheck import cross_check
 from fes_mj.errors import UnstableError
-from fes_mj.stepping import FORCE_EVERY
+from fes_mj.simulation.stepping import FORCE_EVERY
 
 
 @pytest.mark.parametrize("legs", [1, 2])
@@ -51,13 +51,13 @@ def test_constraint_forces_are_the_reactions_of_the_massive_equilibrium(
     """
     from fes_mj.inverse_dynamics import body_loads
     from fes_mj.kinematics import solve
-    from fes_mj.statics import equilibrium, joint_moments
+    from fes_mj.statics import equilibrium
 
     run = fes_mj.simulate(design, smooth_moments)
     motion = solve(design, run.crank_angle)
-    _, reactions = equilibrium(motion, *joint_moments(motion, smooth_moments), body_loads(motion, run.cadence))
+    _, reactions = equilibrium(motion, run.torque.along(motion, run.cadence), body_loads(motion, run.cadence))
     turning = np.zeros(run.crank_angle.shape, bool)
-    for rate in (motion.knee_rate, motion.hip_rate):
+    for rate in (motion.joint_rate.knee, motion.joint_rate.hip):
         turning |= np.convolve(np.abs(np.diff(np.sign(rate), append=0)) > 0, np.ones(7), "same") > 0
     assert turning.mean() < 0.02
     for loop, force in run.loop_force.items():
@@ -80,29 +80,15 @@ def test_moments_that_deliver_next_to_nothing_agree_too(design: fes_mj.Design, k
     assert result.agrees
 
 
-def test_a_step_that_is_too_long_by_default_is_refined(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("fes_mj.mjcf.TARGET_TIMESTEP", 1e-3)
-    design, moments = fes_mj.load_design("r2"), fes_mj.load_moments("p1p2")
-    coarse, result = cross_check(design, moments), refined_cross_check(design, moments)
-    assert not coarse.agrees
-    assert (result.agrees, result.refinements) == (True, 1)
-    assert result.simulation.timestep == pytest.approx(coarse.simulation.timestep / 4, rel=1e-3)
-
-
-def test_refinement_does_not_hide_a_mistake(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("fes_mj.mjcf.SERVO_GAIN", 20.0)
-    assert not refined_cross_check(fes_mj.load_design("trt"), fes_mj.load_moments("p1p2")).agrees
-
-
 def test_a_slack_servo_is_noticed(monkeypatch: pytest.MonkeyPatch, smooth_moments: fes_mj.JointMoments) -> None:
-    monkeypatch.setattr("fes_mj.mjcf.SERVO_GAIN", 20.0)
+    monkeypatch.setattr("fes_mj.simulation.mjcf.SERVO_GAIN", 20.0)
     result = cross_check(fes_mj.load_design("d1"), smooth_moments)
     assert not result.agrees
     assert "cadence_ripple" in [check.name for check in result.checks if not check.ok]
 
 
 def test_soft_loops_are_noticed(monkeypatch: pytest.MonkeyPatch, smooth_moments: fes_mj.JointMoments) -> None:
-    monkeypatch.setattr("fes_mj.mjcf.LOOP_SOLREF", (0.02, 1.0))
+    monkeypatch.setattr("fes_mj.simulation.mjcf.LOOP_SOLREF", (0.02, 1.0))
     result = cross_check(fes_mj.load_design("d1"), smooth_moments)
     assert {"mean_power", "loop_gap"} <= {check.name for check in result.checks if not check.ok}
 

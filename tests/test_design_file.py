@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from fes_mj.design import Design
-from fes_mj.design_file import CATALOGUE, design_toml, load_design
+from fes_mj.design_file import DESIGNS, design_toml, load_design
 from fes_mj.errors import InputError
 
 TRT = {"kind": '"trt"', "R1": "[-0.736, -0.304]", "R2": "0.15", "R6": "0.069", "gear_ratio": "1.31", "seat_angle": "60"}
@@ -67,7 +67,7 @@ def test_printed_and_identified_differ_by_less_than_the_rounding() -> None:
         ({"kind": '"bike"'}, "linkage.kind is 'bike'; it must be one of trt, crt, cdt"),
         ({"kind": None}, "linkage.kind is None"),
         ({"kind": "[1]"}, r"linkage.kind is \[1\]"),
-        ({"gear_ratio": "0"}, "linkage.gear_ratio is 0; it must be a ratio above 0"),
+        ({"gear_ratio": "0"}, "linkage.gear_ratio is 0; it must be a ratio from 0.01 to 20"),
         ({"seat_angle": "1000"}, "linkage.seat_angle is 1000; it must be an angle in degrees"),
         ({"rider": "[rider]\nmass = -3\n"}, "rider.mass is -3; it must be a mass in kg"),
         ({"rider": "[rider]\nweight = 75\n"}, "unknown key rider.weight"),
@@ -85,7 +85,7 @@ def test_what_cannot_be_used_is_named(changes: dict[str, str], words: str, tmp_p
 
 
 def test_unknown_designs_and_unreadable_files(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=f"x9: no such design; it must be one of {', '.join(CATALOGUE)} or a path"):
+    with pytest.raises(InputError, match=f"x9: no such design; it must be one of {', '.join(DESIGNS)} or a path"):
         load_design("x9")
     with pytest.raises(InputError, match=r"nothing.toml: cannot read the design file: No such file"):
         load_design(tmp_path / "nothing.toml")

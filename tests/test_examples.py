@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from fes_mj import load_design, load_moments
-from fes_mj.cli import run
-from fes_mj.design_file import CATALOGUE
+from fes_mj.cli.app import run
+from fes_mj.design_file import DESIGNS
 from fes_mj.statics import quasi_static
 
 ROOT = Path(__file__).parents[1]
@@ -52,7 +52,7 @@ runpy.run_path(sys.argv[0])
 """
 
 
-@pytest.mark.parametrize("name", CATALOGUE)
+@pytest.mark.parametrize("name", DESIGNS)
 def test_replay_moments(name: str) -> None:
     """The files of mjcf/ and MuJoCo alone give the power of statics."""
     expected = quasi_static(load_design(name), load_moments()).power_mean

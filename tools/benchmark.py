@@ -12,16 +12,18 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from fes_mj.cli.output import json_text, print_table
-from fes_mj.design import Design
+from fes_mj.console import print_table
+from fes_mj.design import ONE_LEG, Design
 from fes_mj.design_file import load_design
-from fes_mj.files import write_text
+from fes_mj.files import json_text, write_text
 from fes_mj.kinematics import positions
-from fes_mj.mjcf import LEGS, build_mjcf, steps_per_turn
+from fes_mj.moments import load_moments
 from fes_mj.provenance import provenance
-from fes_mj.simulation import joint_drives
-from fes_mj.stepping import feedback_loop, run_loop
-from fes_mj.torque import TorqueMap, load_moments
+from fes_mj.simulation.bench import joint_drives
+from fes_mj.simulation.mjcf import build_mjcf
+from fes_mj.simulation.stepping import feedback_loop, run_loop
+from fes_mj.time_step import steps_per_turn
+from fes_mj.torque_map import torque_map
 
 ANGLES = np.linspace(0, 2 * np.pi, 360, endpoint=False)
 ROUNDS = 15  # of all candidates in turn; medians and ratios are over rounds
@@ -112,9 +114,9 @@ def kinematics() -> dict[str, np.ndarray]:
 
 def simulation(name: str) -> dict[str, np.ndarray]:
     """Steps per second of simulate's loop, with feedback and all records, and of a bare mj_step loop on its model."""
-    design, torque_map = load_design(name), TorqueMap(load_moments("p1p2"))
-    model, steps = build_mjcf(design).compile(), 2 * steps_per_turn(design.linkage.cadence)
-    loop = feedback_loop(torque_map, joint_drives(LEGS[1]))
+    design, torque = load_design(name), torque_map(load_moments("p1p2"))
+    model, steps = build_mjcf(design).compile(), 2 * steps_per_turn(design, design.linkage.cadence)
+    loop = feedback_loop(torque, joint_drives(ONE_LEG))
 
     def bare() -> None:
         data = mujoco.MjData(model)

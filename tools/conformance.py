@@ -26,13 +26,12 @@ import numpy as np
 from rich.console import Console
 from rich.progress import Progress
 
-from fes_mj.cli.output import json_text
 from fes_mj.design import Design
-from fes_mj.design_file import CATALOGUE, load_design
-from fes_mj.export import mjcf_text, variant_options
-from fes_mj.files import write_text
-from fes_mj.mjcf import build_mjcf
+from fes_mj.design_file import DESIGNS, load_design
+from fes_mj.files import json_text, write_text
 from fes_mj.provenance import provenance
+from fes_mj.simulation.export import mjcf_text, variant_options
+from fes_mj.simulation.mjcf import build_mjcf
 
 ROOT = Path(__file__).parents[1]
 SCRIPTS, ENVIRONMENTS, RESULTS = ROOT / "tools" / "readers", ROOT / ".readers", ROOT / "results"
@@ -175,7 +174,7 @@ def jobs(designs: Iterable[Design], folder: Path) -> list[dict[str, Any]]:
     for design in designs:
         for anchors in ("sites", "bodies"):
             path, options = folder / f"{design.name}_{anchors}.xml", variant_options([anchors, *MOTION])
-            path.write_text(mjcf_text(design, **options), encoding="utf-8")
+            path.write_text(mjcf_text(build_mjcf(design, **options)), encoding="utf-8")
             model = build_mjcf(design, **options).compile()
             names = [model.joint(number).name for number in range(model.njnt)]
             start = zip(names, model.key_qpos[0].tolist(), model.key_qvel[0].tolist(), strict=True)
@@ -190,7 +189,7 @@ def jobs(designs: Iterable[Design], folder: Path) -> list[dict[str, Any]]:
                 }
             )
         path = folder / f"{design.name}.xml"
-        path.write_text(mjcf_text(design), encoding="utf-8")
+        path.write_text(mjcf_text(build_mjcf(design)), encoding="utf-8")
         tasks.append({"model": str(path)})
     return tasks
 
@@ -290,7 +289,7 @@ def main() -> int:
         print(f"unknown reader {unknown[0]!r}; it must be one of {', '.join(READERS)}", file=sys.stderr)
         return 2
     chosen = arguments or [*READERS]
-    designs, found = [load_design(name) for name in CATALOGUE], list[Row]()
+    designs, found = [load_design(name) for name in DESIGNS], list[Row]()
     console = Console(stderr=True)
     with tempfile.TemporaryDirectory() as folder, Progress(console=console, transient=True) as progress:
         tasks = jobs(designs, Path(folder))

@@ -6,15 +6,15 @@ import math
 import sys
 from pathlib import Path
 from string import Template
-from typing import Any
 
 from fes_mj.design import Design
-from fes_mj.design_file import CATALOGUE, load_design
-from fes_mj.export import mjcf_text, scene_text, sidecar_text
+from fes_mj.design_file import DESIGNS, load_design
 from fes_mj.files import replacing, write_text
-from fes_mj.mjcf import build_mjcf
+from fes_mj.moments import JointMoments, load_moments
+from fes_mj.simulation.export import mjcf_text, scene_text, sidecar_text
+from fes_mj.simulation.mjcf import build_mjcf
 from fes_mj.statics import quasi_static
-from fes_mj.torque import load_moments
+from fes_mj.units import RPM
 
 TOOLS = Path(__file__).parent
 FOLDER = TOOLS.parent / "mjcf"
@@ -23,7 +23,7 @@ POSE = 200.0  # deg of crank angle: leg and linkage are spread out in every desi
 
 
 def main() -> None:
-    for name in CATALOGUE:
+    for name in DESIGNS:
         folder = FOLDER / name
         folder.mkdir(parents=True, exist_ok=True)
         for file, text in model_files(load_design(name)).items():
@@ -37,20 +37,20 @@ def model_files(design: Design) -> dict[str, str]:
     """The text files of a design's folder by name."""
     name, moments = design.name, load_moments()
     return {
-        f"{name}.xml": mjcf_text(design),
+        f"{name}.xml": mjcf_text(build_mjcf(design)),
         "scene.xml": scene_text(design, f"{name}.xml"),
         f"{name}.csv": sidecar_text(design, moments),
         "README.md": _readme(design, moments),
     }
 
 
-def _readme(design: Design, moments: Any) -> str:
+def _readme(design: Design, moments: JointMoments) -> str:
     model = build_mjcf(design).compile()
     return Template((TOOLS / "model_readme.md").read_text(encoding="utf-8")).substitute(
         name=design.name,
         NAME=design.name.upper(),
         title=design.linkage.architecture.title,
-        rpm=f"{design.linkage.cadence * 30 / math.pi:.2f}",
+        rpm=f"{design.linkage.cadence / RPM:.2f}",
         joints=model.njnt + model.neq,
         loops="one of them a `connect` constraint" if model.neq == 1 else "two of them `connect` constraints",
         mass=f"{design.rider.mass:g}",
@@ -63,7 +63,7 @@ def _readme(design: Design, moments: Any) -> str:
 
 def write_picture(scene: Path, picture: Path) -> None:
     """Render the scene's oblique view. Raises MissingPartError without OpenGL or pillow."""
-    from fes_mj.headless import use_offscreen_gl
+    from fes_mj.viewing.headless import use_offscreen_gl
 
     use_offscreen_gl()
     import mujoco

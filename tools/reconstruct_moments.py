@@ -5,10 +5,10 @@ from pathlib import Path
 import numpy as np
 
 from fes_mj.files import replacing, write_text
+from fes_mj.moments import COLUMNS
 from fes_mj.paper.evidence import load_evidence
 from fes_mj.paper.printed import DATA
 from fes_mj.paper.reconstruction import Posterior, reconstruct
-from fes_mj.torque import COLUMNS
 
 FOLDER = DATA / "moments"
 

@@ -3,12 +3,13 @@
 import contextlib
 import io
 import json
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from fes_mj.cli import run
+from fes_mj.cli.app import run
 from fes_mj.files import write_text
+from fes_mj.table import Table
 from fes_mj.verification.problems import compare_chains, run_four_bar
 
 FOLDER = Path("results")
@@ -23,89 +24,93 @@ def main() -> None:
     content = json.loads(output.getvalue())
     head = (
         "# Verification\n\nWritten by tools/update_verification.py; every number is in verification.json.\n\n"
-        f"{len(content['checks'])} checks hold, {len(content['faults'])} injected faults are caught."
+        f"{len(content['checks'])} checks hold, {len(content['faults'])} injected faults are caught.\n"
     )
-    parts = [head, *runs(content["runs"]), *problems(), *faults(content["faults"])]
+    tables = [*runs(content["runs"]), problems(), faults(content["faults"])]
     write_text(FOLDER / "verification.json", output.getvalue())
-    write_text(FOLDER / "verification.md", "\n\n".join(parts) + "\n")
+    write_text(FOLDER / "verification.md", "\n".join([head, *(table.markdown() for table in tables)]))
 
 
-def runs(rows: list[dict[str, Any]]) -> Iterator[str]:
+def runs(rows: list[dict[str, Any]]) -> Iterator[Table]:
     names = [f"{row['design']} {row['group']}" for row in rows]
-    yield "## Mean crank power of one leg"
-    yield table(
-        ("run", "static, W", "dynamic, W", "numerical uncertainty, W", "difference, %"),
-        (
+    yield Table(
+        "Mean crank power of one leg",
+        {
+            "run": "",
+            "step, ms": ".3f",
+            "static, W": ".3f",
+            "dynamic, W": ".3f",
+            "numerical uncertainty, W": ".4f",
+            "difference, %": "+.4f",
+        },
+        [
             (
                 name,
-                f"{row['static_power_mean_W']:.3f}",
-                f"{row['power_mean_W']:.3f}",
-                f"{row['numerical_uncertainty_W']:.4f}",
-                f"{100 * row['relative_difference']:+.4f}",
+                1e3 * row["timestep_s"],
+                row["static_power_mean_W"],
+                row["power_mean_W"],
+                row["numerical_uncertainty_W"],
+                100 * row["relative_difference"],
             )
             for name, row in zip(names, rows, strict=True)
-        ),
+        ],
     )
-    yield "## Crank moment by methods that share little: largest difference over a turn, N m"
     for family in ("massless", "massive"):
         apart = [row["crank_moment_differences_Nm"][family] for row in rows]
-        head = (f"{family} methods", *names)
-        yield table(head, ((pair, *(f"{each[pair]:.1e}" for each in apart)) for pair in apart[0]))
-    yield (
-        "What the simulation differs by is its time step, most where the torque map jumps, and, in the massless "
-        "family, the trace of mass that it keeps."
-    )
-    yield "## Energy over a turn, J"
+        yield Table(
+            f"Crank moment by {family} methods: largest difference over a turn, N m",
+            {"methods": "", **dict.fromkeys(names, ".1e")},
+            [(pair, *(each[pair] for each in apart)) for pair in apart[0]],
+            "What the simulation differs by is its time step, most where the torque map jumps, and, in the massless "
+            "family, the trace of mass that it keeps.",
+        )
     terms = [row["energy_J"] for row in rows]
-    yield table(("term", *names), ((term, *(f"{each[term]:.5f}" for each in terms)) for term in terms[0]))
-    yield "## Refinement"
+    cells = [(term, *(each[term] for each in terms)) for term in terms[0]]
+    yield Table("Energy over a turn, J", {"term": "", **dict.fromkeys(names, ".5f")}, cells)
     orders = ("gap_order", "energy_order", "softness_order", "extrapolated_work_error", "power_uncertainty")
-    yield table(("", *names), ((key, *(f"{row['refinement'][key]:.3g}" for row in rows)) for key in orders))
+    cells = [(key.replace("_", " "), *(row["refinement"][key] for row in rows)) for key in orders]
+    yield Table("Refinement", {"": "", **dict.fromkeys(names, ".3g")}, cells)
 
 
-def problems() -> Iterator[str]:
-    yield "## Published problems"
-    yield table(
-        ("A02, two windows, 10 s", "step, ms", "energy drift, J", "loop gap, m", "distance from the exact path, m"),
-        (
+def problems() -> Table:
+    angle, gap = run_four_bar()
+    return Table(
+        "Published problems",
+        {
+            "A02, two windows, 10 s": "",
+            "step, ms": "g",
+            "energy drift, J": ".2g",
+            "loop gap, m": ".2g",
+            "distance from the exact path, m": ".2g",
+        },
+        [
             (
                 chain.settings.name,
-                f"{1e3 * chain.settings.timestep:g}",
-                f"{chain.energy_drift:.2g}",
-                f"{chain.gap.max():.2g}",
-                f"{chain.path_error:.2g}",
+                1e3 * chain.settings.timestep,
+                chain.energy_drift,
+                float(chain.gap.max()),
+                chain.path_error,
             )
             for chain in compare_chains()
-        ),
-    )
-    angle, gap = run_four_bar()
-    yield (
+        ],
         f"Newton's four-bar, two turns: {angle:.2g} deg from Freudenstein's equation (its limit: 0.1), "
-        f"gap {gap:.2g} m (its limit: 0.001)."
+        f"gap {gap:.2g} m (its limit: 0.001).",
     )
 
 
-def faults(rows: list[dict[str, Any]]) -> Iterator[str]:
-    yield "## Injected faults"
-    yield table(
-        ("mistake", "there for it", "first caught by", "times its limit", "checks that noticed"),
-        (
-            (
-                row["mistake"],
-                row["guard"],
-                row["check"],
-                "infinite" if row["factor"] is None else f"{row['factor']:.2g}",
-                str(len(row["failed"])),
-            )
-            for row in rows
-        ),
+def faults(rows: list[dict[str, Any]]) -> Table:
+    return Table(
+        "Injected faults",
+        {
+            "mistake": "",
+            "there for it": "",
+            "first caught by": "",
+            "times its limit": ".2g",
+            "checks that noticed": "d",
+        },
+        [(row["mistake"], row["guard"], row["check"], row["factor"], len(row["failed"])) for row in rows],
+        "Each mistake is put into D1 on its own. A dash: infinitely beyond its limit.",
     )
-
-
-def table(head: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> str:
-    """A Markdown table, first column left, the others right aligned."""
-    lines = [head, ("---", *("---:" for _ in head[1:])), *rows]
-    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
 
 
 if __name__ == "__main__":

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from fes_mj.checks import criteria, find
-from fes_mj.cli.output import number, output, print_table
+from fes_mj.checks import definitions, find
+from fes_mj.console import number, print_table, say
 
 
 def explain(check: str | None = None, /) -> int:
@@ -15,16 +15,16 @@ def explain(check: str | None = None, /) -> int:
         A check as `simulate` or `validate` names it, for example mean_power.
     """
     if check is None:
-        rows = [(name, row.kind, number(row.limit, row.unit)) for name, row in criteria().items()]
+        rows = [(name, row.kind, number(row.limit, row.unit)) for name, row in definitions().items()]
         print_table("Checks", ("check", "kind", "limit"), rows)
         return 0
     row = find(check)
-    output.print(f"{row.name}: {row.quantity}", style="bold", markup=False, soft_wrap=True)
+    say(f"{row.name}: {row.quantity}", "bold")
     for title, text in (
         ("kind", row.kind),
         ("limit", f"{number(row.limit, row.unit)}: {row.reason}"),
         ("guards against", row.guards),
         ("usually broken by", row.breaks),
     ):
-        output.print(f"  {title}: {text}", markup=False, soft_wrap=True)
+        say(f"  {title}: {text}")
     return 0

@@ -8,13 +8,13 @@ from typing import Annotated, Literal
 from cyclopts import Parameter
 
 from fes_mj.cli.options import LoadOptions
-from fes_mj.cli.output import output
+from fes_mj.console import say
 from fes_mj.errors import InputError
 from fes_mj.files import require_writable, write_text
 
 _DEFAULTS = LoadOptions()
 _SCENE = "scene.xml"
-_Variant = Literal["sites", "bodies", "passive", "two-legs", "compatible"]  # the keys of fes_mj.export.VARIANTS
+_Variant = Literal["sites", "bodies", "passive", "two-legs", "compatible"]  # the keys of simulation.export.VARIANTS
 
 
 def export(
@@ -49,11 +49,12 @@ def export(
         if out.name == _SCENE:
             raise InputError(f"{out}: --scene writes {_SCENE} beside the model; give the model another name")
         require_writable(out.with_name(_SCENE), "the scene")
-    from fes_mj.export import mjcf_text, scene_text, sidecar_text, variant_options
+    from fes_mj.simulation.export import mjcf_text, scene_text, sidecar_text, variant_options
+    from fes_mj.simulation.mjcf import build_mjcf
 
     changes = variant_options(variant or ())
     texts = {
-        out: mjcf_text(loaded.design, cadence=loaded.cadence, **changes),
+        out: mjcf_text(build_mjcf(loaded.design, cadence=loaded.cadence, **changes)),
         table: sidecar_text(loaded.design, loaded.moments, loaded.cadence, changes.get("legs", 1)),
     }
     if scene:
@@ -61,5 +62,5 @@ def export(
     for path, text in texts.items():
         write_text(path, text)
     for path, what in zip(texts, ("model", "table", "scene"), strict=False):
-        output.print(f"{what}: {path}", markup=False, soft_wrap=True)
+        say(f"{what}: {path}")
     return 0

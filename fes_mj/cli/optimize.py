@@ -2,26 +2,25 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import numpy as np
 from cyclopts import Parameter
 
-from fes_mj.cli.output import output, print_json, progress_bar
 from fes_mj.cli.search_options import SearchOptions
-from fes_mj.cli.winner_output import Found, limits_table, print_winner, rows, summary, write_design
-from fes_mj.design import Design
+from fes_mj.console import output, print_table, progress_bar, say
 from fes_mj.design_file import load_design
-from fes_mj.files import require_writable, write_text
-from fes_mj.torque import GROUPS, load_moments
+from fes_mj.files import json_text, require_writable, write_text
+from fes_mj.moments import GROUPS
 
 if TYPE_CHECKING:
+    from fes_mj.optimization.outcome import Outcome
     from fes_mj.optimization.problem import Problem
+    from fes_mj.optimization.winner import Winner
 
 _DEFAULTS = SearchOptions()
-_PARETO_BUDGET = 50_000
 
 
 def optimize(
@@ -51,29 +50,28 @@ def optimize(
     """
     options.check()
     _check_files(out, report)
+    moments, problem = options.load_moments(), options.load_problem(kind)
+    outcome = _search(problem, options, quiet or json)
+    design = problem.design(outcome.x, out.stem if out else f"{kind}-{moments.name}")
+    how = f"--method {options.method} --seed {options.seed}"
+    origin = f"Found by fes_mj optimize {kind} {how}, {outcome.evaluations} evaluations."
+    # first: what was found stays, whatever its simulation does
+    files = outcome.write(design, out, origin) if out else {}
     from fes_mj.optimization.winner import assess
 
-    moments, rival, start = options.load_moments(), load_design(options.speeds_of), options.load_start(kind)
-    task = options.task(kind, moments, rival, start)
-    found = _front(task, options) if options.method == "nsga-ii" else _search(task, options, start, quiet or json)
-    design = task.design(found.x, out.stem if out else f"{kind}-{moments.name}")
-    how = f"--method {options.method} --seed {options.seed}"
-    told = f"Found by fes_mj optimize {kind} {how}, {found.evaluations} evaluations."
-    # first: what was found stays, whatever its simulation does
-    files = write_design(design, found.front, out, told) if out else {}
-    winner = assess(design, rival, moments, options.seed)
+    winner = assess(design, load_design(options.speeds_of), moments, options.seed)
     if report:
         from fes_mj.optimization.page import page_html
 
-        write_text(report, page_html(winner, told, rows(winner), limits_table(found), task.limits.space))
+        write_text(report, page_html(winner, outcome, origin))
         files["report"] = str(report)
     if json:
-        print_json(summary(winner, found) | {"design_file": None, **files})
+        sys.stdout.write(json_text(outcome.summary(winner) | {"design_file": None, **files}))
     elif not quiet:
-        print_winner(winner, found)
+        _print(winner, outcome)
         for what, file in files.items():
-            output.print(f"{what.replace('_', ' ')}: {file}", markup=False, soft_wrap=True)
-    return 0 if winner.check.agrees else 1
+            say(f"{what.replace('_', ' ')}: {file}")
+    return 0 if winner.case.agrees else 1
 
 
 def _check_files(out: Path | None, report: Path | None) -> None:
@@ -81,38 +79,48 @@ def _check_files(out: Path | None, report: Path | None) -> None:
     if out:
         require_writable(out, "the design", ".toml")
     if report:
-        from fes_mj.optimization.page import require_packages
+        from fes_mj.viewing.pages import require_page_packages
 
         require_writable(report, "the page", ".html")
-        require_packages()
+        require_page_packages()
 
 
-def _search(task: Problem, options: SearchOptions, start: Design | None, silent: bool) -> Found:
-    """The best of several independent searches."""
+def _search(problem: Problem, options: SearchOptions, silent: bool) -> Outcome:
+    """The best of several independent searches, or the front."""
     from fes_mj.optimization.optimize import optimize as run
-    from fes_mj.optimization.parallel import Workers
+    from fes_mj.optimization.outcome import Outcome, front_outcome
+    from fes_mj.parallel import Workers
 
+    if options.method == "nsga-ii":
+        return front_outcome(problem, options.budget, options.seed, options.smooth)
     with progress_bar(f"{options.method}, searches", options.searches, silent) as advance:
         results = run(
-            task,
+            problem,
             options.method,
             searches=options.searches,
             budget=options.budget,
             seed=options.seed,
-            start=task.variables(start) if start else None,
+            start=problem.variables(problem.template) if options.start else None,
             workers=Workers(options.jobs, options.cluster),
             progress=lambda _: advance(1),
         )
-    return Found(task, options.method, results[0].x, sum(result.evaluations for result in results))
+    return Outcome(problem, options.method, results[0].x, sum(result.evaluations for result in results))
 
 
-def _front(task: Problem, options: SearchOptions) -> Found:
-    """The front, and of it the design with the most power averaged over both groups (the paper's recommendation)."""
-    from fes_mj.optimization.cycles import WorkTable
-    from fes_mj.optimization.pareto import pareto_front
-
-    sets = tuple(load_moments(each) for each in GROUPS)
-    averaged = replace(task, table=WorkTable.of(*sets), baseline=0.0)
-    front = pareto_front(averaged, sets, options.budget or _PARETO_BUDGET, options.seed, options.smooth)
-    x = front.x[int(np.argmax(front.power.mean(axis=1)))]
-    return Found(task, options.method, x, front.evaluations, front)
+def _print(winner: Winner, outcome: Outcome) -> None:
+    """Tables of what was found, and notes on what to beware of."""
+    front, design = outcome.front, winner.design
+    title = f"{design.name}: {design.linkage.architecture.title}; {winner.case.moments.name}"
+    print_table(f"{title}; {outcome.method}, {outcome.evaluations:,} evaluations", ("", "value"), winner.rows)
+    print_table("Constraints", ("constraint", "value", "limit", ""), outcome.limit_rows)
+    if front:
+        keep = np.unique(np.linspace(0, len(front.x) - 1, 12).astype(int))
+        cells = [(f"{number}", *(f"{power:.2f}" for power in front.power[number])) for number in keep]
+        print_table(f"Front, {len(keep)} of {len(front.x)} designs", ("design", *(f"{g}, W" for g in GROUPS)), cells)
+    if winner.gain and winner.gain.mean > 0 and not winner.gain.beyond_error:
+        output.print(
+            "note: the gain is within the error bar of the recovered moments; --caution 1 looks for a surer one"
+        )
+    if winner.reversals.knee > 2:
+        say("note: the knee swings more than once per turn of the crank; can the muscles follow?")
+    say("note: the design space is an assumption, see --problem")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Literal, NamedTuple
@@ -12,11 +11,10 @@ from cyclopts import Parameter
 from fes_mj.design import Design
 from fes_mj.design_file import load_design
 from fes_mj.errors import InputError
-from fes_mj.torque import JointMoments, load_moments
+from fes_mj.moments import JointMoments, load_moments
 from fes_mj.torque_velocity import load_torque_velocity
-
-HIGHEST_CADENCE = 200.0  # rpm; up to here the default step keeps every check of the catalogue inside its limit
-LOWEST_CADENCE = 1.0  # rpm; a turn of a minute
+from fes_mj.units import RPM
+from fes_mj.variables import VARIABLES
 
 
 class Loaded(NamedTuple):
@@ -85,15 +83,15 @@ class RunOptions(LoadOptions):
 
 def crank_speed(cadence: float | None, design: Design) -> float:
     """Crank speed in rad/s of a --cadence in rpm, by default the design's own."""
-    allowed = f"from {LOWEST_CADENCE:g} to {HIGHEST_CADENCE:g} rpm"
+    allowed = VARIABLES["cadence_rpm"]
     if cadence is not None:
-        if not LOWEST_CADENCE <= cadence <= HIGHEST_CADENCE:
-            raise InputError(f"--cadence is {cadence:g}; it must be {allowed}")
-        return cadence * math.pi / 30
-    own = design.linkage.cadence * 30 / math.pi
-    if not LOWEST_CADENCE <= own <= HIGHEST_CADENCE:
+        if not allowed.accepts(cadence):
+            raise InputError(f"--cadence is {cadence:g}; it must be {allowed.allowed}")
+        return cadence * RPM
+    own = design.linkage.cadence / RPM
+    if not allowed.accepts(own):
         raise InputError(
             f"{design.name}: linkage.gear_ratio is {design.linkage.gear_ratio:g}, which makes {own:.3g} rpm at the "
-            f"tricycle's speed; it must be {allowed}: change the ratio or give --cadence"
+            f"tricycle's speed; it must be {allowed.allowed}: change the ratio or give --cadence"
         )
     return design.linkage.cadence

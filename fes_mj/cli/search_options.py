@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Parameter
 
-from fes_mj.design import Design
-from fes_mj.design_file import load_design
 from fes_mj.errors import InputError
-from fes_mj.torque import JointMoments, load_moments
+from fes_mj.moments import JointMoments, load_moments
 
 if TYPE_CHECKING:
     from fes_mj.optimization.problem import Problem
@@ -98,28 +95,18 @@ class SearchOptions:
         """The joint moments that the options name."""
         return load_moments(self.moments or self.group or "p1p2")
 
-    def load_start(self, kind: str) -> Design | None:
-        """The design to start from, if one is given. Raises InputError if it is of another kind."""
-        first = load_design(self.start) if self.start else None
-        if first and first.linkage.kind != kind:
-            raise InputError(
-                f"--start {self.start} is a {first.linkage.kind}, not a {kind}; start from a design of that kind"
-            )
-        return first
-
-    def task(self, kind: str, moments: JointMoments, rival: Design, start: Design | None) -> Problem:
+    def load_problem(self, kind: str) -> Problem:
         """The problem that the options describe."""
-        from fes_mj.optimization.confidence import uncertain_table
-        from fes_mj.optimization.cycles import WorkTable, cycles, joint_speeds
-        from fes_mj.optimization.problem import Problem
-        from fes_mj.optimization.problem_file import DEFAULT, load_limits
+        from fes_mj.optimization.problem import make_problem
+        from fes_mj.optimization.problem_file import DEFAULT
 
-        limits = load_limits(self.problem or DEFAULT)
-        table = uncertain_table(moments) if self.caution else WorkTable.of(moments)
-        # the rider, seat and coupler angle of the start, or of the printed six-bars
-        template = start or load_design("r1" if kind == "crt" else "d1")
-        own, given = joint_speeds(rival, table), {"knee": self.knee_speed_limit, "hip": self.hip_speed_limit}
-        # a hair above, so that the design itself is within its own limits
-        knee, hip = (own[joint] * (1 + 1e-9) if limit is None else limit for joint, limit in given.items())
-        baseline = cycles(rival, table).work[0] * rival.linkage.cadence / (2 * math.pi)
-        return Problem(template, table, limits, knee, hip, self.caution, baseline)
+        return make_problem(
+            kind,
+            self.load_moments(),
+            compared_with=self.speeds_of,
+            start=self.start,
+            limits=self.problem or DEFAULT,
+            knee_speed=self.knee_speed_limit,
+            hip_speed=self.hip_speed_limit,
+            caution=self.caution,
+        )

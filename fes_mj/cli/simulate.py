@@ -2,25 +2,27 @@
 
 from __future__ import annotations
 
-from importlib.metadata import version
+import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from fes_mj.cli.options import Loaded, RunOptions
-from fes_mj.cli.output import json_text, number, output, print_json, print_table, verdict
-from fes_mj.cli.static import heading, print_notes, rows, summary, with_error
+from fes_mj.cli.options import RunOptions
+from fes_mj.cli.static import force_rows, heading, print_notes, rows, span, with_error
+from fes_mj.console import number, output, print_table, say, verdict
 from fes_mj.errors import InputError
-from fes_mj.files import require_folder, require_writable, write_text
+from fes_mj.files import json_text, require_folder, require_writable, write_text
 
 if TYPE_CHECKING:
-    from fes_mj.crosscheck import CrossCheck
+    from collections.abc import Sequence
+
+    from fes_mj.checks import Check
+    from fes_mj.crosscheck import Case
 
 _DEFAULTS = RunOptions()
 LONGEST_TIMESTEP = 0.02  # s
 MOST_TURNS = 1000
-MOST_STEPS = 4_000_000  # of one run; its record takes a gigabyte
 
 
 def simulate(
@@ -45,8 +47,8 @@ def simulate(
     out
         Existing folder for the result (JSON), the cycle (CSV) and the model (MJCF).
     timestep
-        Step of the simulation in s, rounded to a whole number of steps per turn. By default near 0.00025, and
-        a quarter or a sixteenth of it for a linkage that moves too sharply for that.
+        Step of the simulation in s, rounded to a whole number of steps per turn. By default it is chosen beforehand,
+        by how sharply the linkage moves at its cadence.
     turns
         Measured turns.
     legs
@@ -54,27 +56,22 @@ def simulate(
     """
     loaded = options.load(design)
     _check(render, out, timestep, turns)
-    _check_steps(loaded.cadence, timestep, turns)
-    from fes_mj.crosscheck import cross_check, refined_cross_check
+    from fes_mj.crosscheck import cross_check
 
-    fixed: dict[str, Any] = {"cadence": loaded.cadence, "turns": turns, "legs": legs}
-    if timestep is None:
-        result = refined_cross_check(loaded.design, loaded.moments, **fixed)
-    else:
-        result = cross_check(loaded.design, loaded.moments, timestep=timestep, **fixed)
+    case = cross_check(loaded.design, loaded.moments, cadence=loaded.cadence, timestep=timestep, turns=turns, legs=legs)
     if out:
-        _write(result, out)
+        _write(case, out)
     if options.json:
-        print_json(_summary(result))
+        sys.stdout.write(json_text(case.summary()))
     elif not options.quiet:
-        _print(result, loaded, options.verbose)
+        _print(case, options.verbose)
     if render:
-        from fes_mj.render import render_video
+        from fes_mj.viewing.render import render_video
 
-        render_video(result, render, quiet=options.quiet)
+        render_video(case, render, quiet=options.quiet)
         if not (options.json or options.quiet):
-            output.print(f"video: {render}", markup=False, soft_wrap=True)
-    return 0 if result.agrees else 1
+            say(f"video: {render}")
+    return 0 if case.agrees else 1
 
 
 def _check(render: Path | None, out: Path | None, timestep: float | None, turns: int) -> None:
@@ -89,109 +86,42 @@ def _check(render: Path | None, out: Path | None, timestep: float | None, turns:
         raise InputError(f"--turns is {turns}; it must be from 1 to {MOST_TURNS}")
 
 
-def _check_steps(cadence: float, timestep: float | None, turns: int) -> None:
-    """Refuse runs whose record would not fit into memory."""
-    from fes_mj.mjcf import steps_per_turn
-
-    steps = turns * steps_per_turn(cadence, timestep)
-    if steps > MOST_STEPS:
-        raise InputError(
-            f"--turns {turns} would take {steps:.3g} time steps; at most {MOST_STEPS:.0e} fit into memory: "
-            "give fewer turns or a longer --timestep"
-        )
+def check_rows(checks: Sequence[Check]) -> list[tuple[str, str, str, str]]:
+    """Name, value, limit and verdict of checks, as text."""
+    return [
+        (each.name, number(each.value, each.unit), number(each.limit, each.unit), verdict(each.ok)) for each in checks
+    ]
 
 
-def _summary(result: CrossCheck) -> dict[str, Any]:
-    run, energy = result.simulation, result.simulation.energy
-    return summary(result.static) | {
-        "power_mean_W": run.power_mean,
-        "work_per_turn_J": 2 * np.pi * run.power_mean / run.cadence,
-        "knee_range_deg": _range(run.joint_angle, "knee"),
-        "hip_range_deg": _range(run.joint_angle, "hip"),
-        "static_power_mean_W": result.static.power_mean,
-        "relative_difference": result.relative_difference,
-        "loop_gap_max_m": run.loop_gap_max,
-        "cadence_ripple": run.cadence_ripple,
-        "agrees": result.agrees,
-        "checks": [
-            {"name": check.name, "value": check.value, "limit": check.limit, "unit": check.unit, "ok": check.ok}
-            for check in result.checks
-        ],
-        "legs": len(run.legs),
-        "turns": run.turns,
-        "timestep_s": run.timestep,
-        "loop_force_max_N": {loop: float(np.abs(force).max()) for loop, force in run.loop_force.items()},
-        "energy_J": {
-            "joint_work": energy.joint_work,
-            "crank_work": energy.crank_work,
-            "kinetic": energy.kinetic,
-            "potential": energy.potential,
-            "lost": energy.lost,
-        },
-        "versions": {name: version(name) for name in ("fes-mj", "mujoco", "numpy")},
-    }
-
-
-def _range(angles: dict[str, Any], joint: str) -> list[float]:
-    both = np.degrees([angle for name, angle in angles.items() if name.endswith(joint)])
-    return [float(both.min()), float(both.max())]
-
-
-def _print(result: CrossCheck, loaded: Loaded, verbose: bool) -> None:
-    run = result.simulation
-    knee, hip = _range(run.joint_angle, "knee"), _range(run.joint_angle, "hip")
+def _print(case: Case, verbose: bool) -> None:
+    run = case.simulation
     dynamic = (
-        with_error(run.power_mean, result.static.power_sd),  # the mean is the same functional of the moments
+        with_error(run.power_mean, case.static.power_sd),  # the mean is the same functional of the moments
         f"{2 * np.pi * run.power_mean / run.cadence:.3f}",
-        f"{knee[0]:.1f} to {knee[1]:.1f}",
-        f"{hip[0]:.1f} to {hip[1]:.1f}",
+        *(span(ends) for ends in run.joint_range_deg),
     )
-    both = [(name, value, other) for (name, value), other in zip(rows(result.static), dynamic, strict=True)]
-    print_table(heading(result.static, len(run.legs)), ("", "quasi-static", "dynamic"), both)
-    print_table(
-        "Checks",
-        ("check", "value", "limit", "verdict"),
-        [
-            (check.name, number(check.value, check.unit), number(check.limit, check.unit), verdict(check.ok))
-            for check in result.checks
-        ],
-    )
+    both = [(name, value, other) for (name, value), other in zip(rows(case.static), dynamic, strict=True)]
+    print_table(heading(case.static, len(run.legs)), ("", "quasi-static", "dynamic"), both)
+    print_table("Checks", ("check", "value", "limit", "verdict"), check_rows(case.checks))
     if verbose:
-        _print_details(result)
-    print_notes(result.static)
-    if result.refinements:
-        step = 1e3 * result.simulation.timestep
-        output.print(f"note: the default step left a check failing; this is with {step:.3g} ms")
-    if result.agrees:
-        output.print(f"[bold green]Dynamic and static agree[/]: mean power differs by {result.difference_text}.")
+        terms = [(name.replace("_", " "), f"{value:.5f}") for name, value in run.energy.as_json().items()]
+        print_table("Energy over the measured turns", ("term", "J"), terms)
+        print_table("Constraint forces", ("loop", "mean N", "largest N"), force_rows(run.loop_force))
+    print_notes(case.static)
+    if case.agrees:
+        output.print(f"[bold green]Dynamic and static agree[/]: mean power differs by {case.difference_text}.")
     else:
-        failed = ", ".join(check.name for check in result.checks if not check.ok)
+        failed = ", ".join(check.name for check in case.checks if not check.ok)
         output.print(f"[bold red]Dynamic and static do not agree[/]: {failed}; `fes_mj explain CHECK` says more.")
 
 
-def _print_details(result: CrossCheck) -> None:
-    run, energy = result.simulation, result.simulation.energy
-    terms = {
-        "joint work": energy.joint_work,
-        "crank work": energy.crank_work,
-        "kinetic, change": energy.kinetic,
-        "potential, change": energy.potential,
-        "lost": energy.lost,
-    }
-    print_table("Energy over the measured turns", ("term", "J"), [(name, f"{v:.5f}") for name, v in terms.items()])
-    forces = {loop.replace("_", " "): np.abs(force) for loop, force in run.loop_force.items()}
-    cells = [(name, f"{force.mean():.1f}", f"{force.max():.1f}") for name, force in forces.items()]
-    print_table("Constraint forces", ("loop", "mean N", "largest N"), cells)
-
-
-def _write(result: CrossCheck, out: Path) -> None:
+def _write(case: Case, out: Path) -> None:
     """Result, cycle and model, each whole or not at all."""
-    from fes_mj.crosscheck import cycle_csv
-    from fes_mj.export import mjcf_text
+    from fes_mj.simulation.export import mjcf_text
+    from fes_mj.simulation.mjcf import build_mjcf
 
-    run = result.simulation
-    stem = f"{run.design.name}-{run.moments.name}"
-    model = mjcf_text(run.design, cadence=run.cadence, timestep=run.timestep, legs=len(run.legs))
-    write_text(out / f"{stem}.json", json_text(_summary(result)))
-    write_text(out / f"{stem}.csv", cycle_csv(result))
-    write_text(out / f"{stem}.xml", model)
+    run, stem = case.simulation, f"{case.design.name}-{case.moments.name}"
+    model = build_mjcf(case.design, cadence=case.cadence, timestep=run.timestep, legs=case.legs)
+    write_text(out / f"{stem}.json", json_text(case.summary()))
+    write_text(out / f"{stem}.csv", case.cycle_csv())
+    write_text(out / f"{stem}.xml", mjcf_text(model))

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-import math
+import sys
 from typing import Annotated, Any
 
 import numpy as np
 from cyclopts import Parameter
 
 from fes_mj.cli.options import RunOptions
-from fes_mj.cli.output import output, print_json, print_table
+from fes_mj.console import print_table, say
+from fes_mj.files import json_text
 from fes_mj.statics import QuasiStatic, quasi_static
-from fes_mj.torque import reference_ranges
+from fes_mj.units import RPM
 
 _DEFAULTS = RunOptions()
 
@@ -31,50 +32,35 @@ def static(
     loaded = options.load(design)
     result = quasi_static(*loaded)
     if options.json:
-        print_json(summary(result) | (_curves(quasi_static(*loaded, points=360)) if curves else {}))
+        sys.stdout.write(json_text(result.summary() | (_curves(quasi_static(*loaded, points=360)) if curves else {})))
     elif not options.quiet:
         print_table(heading(result), ("", "quasi-static"), rows(result))
         if options.verbose:
-            print_table("Joint reactions", ("joint", "mean N", "largest N"), _reaction_rows(result))
+            print_table("Joint reactions", ("joint", "mean N", "largest N"), force_rows(result.reactions))
         print_notes(result)
     return 0
 
 
-def summary(result: QuasiStatic) -> dict[str, Any]:
-    """The keys that every result of a run has."""
-    return {
-        "design": result.design.name,
-        "group": result.moments.name,
-        "torque_velocity": relation.name if (relation := result.moments.torque_velocity) else None,
-        "cadence_rpm": result.cadence * 30 / math.pi,
-        "power_mean_W": result.power_mean,
-        "power_sd_W": result.power_sd,
-        "work_per_turn_J": result.work_per_turn,
-        "knee_range_deg": _range(result.knee_angle),
-        "hip_range_deg": _range(result.hip_angle),
-        "notes": notes(result),
-    }
-
-
 def heading(result: QuasiStatic, legs: int = 1) -> str:
     """Which design, whose moments, how fast."""
-    kind = result.design.linkage.architecture.title
-    rpm = result.cadence * 30 / math.pi
+    kind, relation = result.design.linkage.architecture.title, result.moments.torque_velocity
     which = "one leg" if legs == 1 else "two legs, values of one"
-    relation = result.moments.torque_velocity
     faster = f" with the torque-velocity relation of {relation.name.title()}" if relation else ""
-    return f"{result.design.name}, {kind}; {result.moments.name}{faster}; {rpm:.1f} rpm; {which}"
+    return f"{result.design.name}, {kind}; {result.moments.name}{faster}; {result.cadence / RPM:.1f} rpm; {which}"
 
 
 def rows(result: QuasiStatic) -> list[tuple[str, str]]:
     """Quantity and quasi-static value, as text."""
-    knee, hip = _range(result.knee_angle), _range(result.hip_angle)
     return [
         ("mean crank power, W", with_error(result.power_mean, result.power_sd)),
         ("work per turn, J", f"{result.work_per_turn:.3f}"),
-        ("knee angle, deg", f"{knee[0]:.1f} to {knee[1]:.1f}"),
-        ("hip angle, deg", f"{hip[0]:.1f} to {hip[1]:.1f}"),
+        *((f"{joint} angle, deg", span(ends)) for joint, ends in result.joint_range_deg.items()),
     ]
+
+
+def span(ends: list[float]) -> str:
+    """A range of angles."""
+    return f"{ends[0]:.1f} to {ends[1]:.1f}"
 
 
 def with_error(power: float, deviation: float | None) -> str:
@@ -82,39 +68,21 @@ def with_error(power: float, deviation: float | None) -> str:
     return f"{power:.3f}" if deviation is None else f"{power:.2f} +- {deviation:.2f}"
 
 
-def notes(result: QuasiStatic) -> list[str]:
-    """What a reader must know of the result: joint angles for which the torque map has no data."""
-    remarks = []
-    angles = {"knee": result.knee_angle, "hip": result.hip_angle}
-    for joint, (low, high) in reference_ranges().items():
-        beyond = max(low - angles[joint].min(), angles[joint].max() - high)
-        if beyond > math.radians(0.01):
-            remarks.append(
-                f"the {joint} moves {math.degrees(beyond):.1f} deg beyond the range of the moments "
-                f"({math.degrees(low):.1f} to {math.degrees(high):.1f} deg); the moment at its end is kept there"
-            )
-    return remarks
+def force_rows(forces: dict[str, Any]) -> list[tuple[str, str, str]]:
+    """Mean and largest size of forces over the turn, N."""
+    sizes = {name.replace("_", " "): np.abs(force) for name, force in forces.items()}
+    return [(name, f"{size.mean():.1f}", f"{size.max():.1f}") for name, size in sizes.items()]
 
 
 def print_notes(result: QuasiStatic) -> None:
-    """Print the notes, if any."""
-    for note in notes(result):
-        output.print(f"note: {note}", markup=False, soft_wrap=True)
+    """Print what a reader must know of the result, if anything."""
+    for note in result.notes:
+        say(f"note: {note}")
 
 
 def _curves(result: QuasiStatic) -> dict[str, Any]:
     return {
         "crank_angle_deg": np.arange(360.0),
         "crank_moment_Nm": result.crank_moment,
-        "knee_deg": np.degrees(result.knee_angle),
-        "hip_deg": np.degrees(result.hip_angle),
+        **{f"{joint}_deg": np.degrees(angle) for joint, angle in result.joint_angle.items()},
     }
-
-
-def _reaction_rows(result: QuasiStatic) -> list[tuple[str, str, str]]:
-    sizes = {point: np.abs(force) for point, force in result.reactions.items()}
-    return [(point.replace("_", " "), f"{size.mean():.1f}", f"{size.max():.1f}") for point, size in sizes.items()]
-
-
-def _range(angle: Any) -> list[float]:
-    return [math.degrees(angle.min()), math.degrees(angle.max())]

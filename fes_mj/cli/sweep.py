@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 import os
+import sys
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 from cyclopts import Parameter
 
-from fes_mj.cli.output import print_json, print_table, progress_bar
-from fes_mj.errors import import_extra
-from fes_mj.files import require_folder
-
-if TYPE_CHECKING:
-    from fes_mj.optimization.sweep import Sweep
+from fes_mj.console import print_table, progress_bar
+from fes_mj.files import json_text, require_folder
 
 
 def sweep(
@@ -44,9 +41,9 @@ def sweep(
     quiet
         Print nothing.
     """
-    from fes_mj.optimization.parallel import Workers
-    from fes_mj.optimization.study import load_study
-    from fes_mj.optimization.sweep import Sweep
+    from fes_mj.parallel import Workers
+    from fes_mj.sweep.study import load_study
+    from fes_mj.sweep.sweep import Sweep
 
     require_folder(out if out.exists() else out.parent, "the results")
     sweep = Sweep(load_study(study), out)
@@ -58,31 +55,13 @@ def sweep(
     with progress_bar(f"{study.stem}, points", total, quiet or json, before) as advance:
         sweep.run(workers, advance)
     seconds = time.perf_counter() - start
-    summary = _summary(sweep, before, seconds)
+    summary = sweep.summary() | {"found_finished": before, "seconds": seconds}
+    summary["points_per_second"] = (summary["points"] - before) / seconds
     if json:
-        print_json(summary)
+        sys.stdout.write(json_text(summary))
     elif not quiet:
         _print(summary, study.stem)
     return 0
-
-
-def _summary(sweep: Sweep, before: int, seconds: float) -> dict[str, Any]:
-    pc = import_extra("pyarrow.compute", "optimize")
-    table = sweep.read()
-    turning = int(pc.sum(table["turns"]).as_py() or 0)
-    best = None
-    if turning:
-        power = table["power_mean_W"]
-        best = table.slice(pc.index(power, pc.max(power)).as_py(), 1).to_pylist()[0]
-    return {
-        "folder": str(sweep.folder),
-        "points": table.num_rows,
-        "turning": turning,
-        "found_finished": before,
-        "seconds": seconds,
-        "points_per_second": (table.num_rows - before) / seconds,
-        "best": best,
-    }
 
 
 def _print(summary: dict[str, Any], name: str) -> None:

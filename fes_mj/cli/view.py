@@ -5,13 +5,13 @@ from __future__ import annotations
 import os
 import sys
 
-from fes_mj.cli.options import RunOptions
+from fes_mj.cli.options import LoadOptions
 from fes_mj.errors import MissingPartError
 
-_DEFAULTS = RunOptions()
+_DEFAULTS = LoadOptions()
 
 
-def view(design: str, /, *, options: RunOptions = _DEFAULTS) -> int:
+def view(design: str, /, *, options: LoadOptions = _DEFAULTS) -> int:
     """Watch a design run in MuJoCo's viewer, under the torque map and the crank servo.
 
     Parameters
@@ -24,7 +24,7 @@ def view(design: str, /, *, options: RunOptions = _DEFAULTS) -> int:
         raise MissingPartError(
             "the viewer needs a screen and there is none; make a video instead: fes_mj simulate ... --render out.mp4"
         )
-    from fes_mj import viewer
+    from fes_mj.viewing import viewer
 
     viewer.show(*loaded)
     return 0

@@ -6,15 +6,17 @@ of their difference. An optimiser seeks out what the evidence leaves open, so it
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fes_mj.arrays import FloatArray
+from fes_mj.cycles import WorkTable
 from fes_mj.errors import InputError
 from fes_mj.fourier import fourier
-from fes_mj.optimization.cycles import WorkTable
-from fes_mj.torque import JOINTS, JointMoments, TorqueMap
+from fes_mj.joints import PerJoint
+from fes_mj.moments import JointMoments
+from fes_mj.torque_map import torque_map
 
 _NEGLIGIBLE = 1e-9  # part of the largest variance; directions below it are rounding
 
@@ -43,16 +45,16 @@ def uncertain_table(moments: JointMoments) -> WorkTable:
         )
     variance, directions = np.linalg.eigh(moments.covariance)
     large = variance > _NEGLIGIBLE * variance[-1]
-    deviations = dict(zip(JOINTS, np.split(directions[:, large] * np.sqrt(variance[large]), len(JOINTS)), strict=True))
-    torque_map = TorqueMap(moments)
+    deviations = PerJoint(*np.split(directions[:, large] * np.sqrt(variance[large]), 2))
+    torque = torque_map(moments)
 
-    def sets(joint: str, angle: Any) -> NDArray[np.float64]:
-        return np.column_stack([torque_map.at_source(joint, angle), fourier(angle) @ deviations[joint]])
+    def sets(joint: str, angle: FloatArray) -> FloatArray:
+        return np.column_stack([torque.at_source(joint, angle), fourier(angle) @ deviations[joint]])
 
-    return WorkTable(sets)
+    return WorkTable(sets, moments.measured_on)
 
 
-def gain(power: NDArray[np.float64], baseline: NDArray[np.float64]) -> Gain:
+def gain(power: FloatArray, baseline: FloatArray) -> Gain:
     """Gain of one design over another, both powers by the same uncertain_table, shape (sets,)."""
     difference = power - baseline
     return Gain(float(difference[0]), float(np.linalg.norm(difference[1:])))

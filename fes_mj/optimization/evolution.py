@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import differential_evolution
 
-from fes_mj.errors import import_extra
-from fes_mj.optimization.problem import LENGTHS
+from fes_mj.arrays import FloatArray
+from fes_mj.errors import require_extra
 from fes_mj.optimization.search import Search, feasible_start
+from fes_mj.variables import LENGTHS
 
 POPULATION = 7  # per variable
 # Part of the search range; a restart of CMA-ES begins at another random feasible design.
@@ -18,14 +18,14 @@ CMA_SIGMA = 0.05
 CMA_POPULATION = 32  # three times pycma's own: a population costs hardly more than a few designs
 
 
-def differential(search: Search, start: NDArray[np.float64] | None, random: np.random.Generator) -> None:
+def differential(search: Search, start: FloatArray | None, random: np.random.Generator) -> None:
     """Differential evolution (scipy), started again from a new population whenever one has converged."""
-    bounds = search.problem.limits.search[:LENGTHS]
+    bounds = search.problem.limits.search[: len(LENGTHS)]
     while True:
         differential_evolution(
             lambda x: -search(x.T),
             bounds,
-            x0=None if start is None else np.clip(start[:LENGTHS], *bounds.T),
+            x0=None if start is None else np.clip(start[: len(LENGTHS)], *bounds.T),
             popsize=POPULATION,
             maxiter=search.budget,
             tol=1e-6,
@@ -39,10 +39,10 @@ def differential(search: Search, start: NDArray[np.float64] | None, random: np.r
         start = None
 
 
-def cma_es(search: Search, start: NDArray[np.float64] | None, random: np.random.Generator) -> None:
+def cma_es(search: Search, start: FloatArray | None, random: np.random.Generator) -> None:
     """CMA-ES (pycma), started again with a doubled population whenever it has converged."""
-    cma = import_extra("cma", "optimize")
-    low, high = search.problem.limits.search[:LENGTHS].T
+    cma = require_extra("optimize", "cma")
+    low, high = search.problem.limits.search[: len(LENGTHS)].T
     population = CMA_POPULATION
     while True:
         x0 = feasible_start(search, random) if start is None else start
@@ -53,7 +53,9 @@ def cma_es(search: Search, start: NDArray[np.float64] | None, random: np.random.
             "verbose": -9,
             "tolfun": 1e-6,
         }
-        strategy = cma.CMAEvolutionStrategy(np.clip((x0[:LENGTHS] - low) / (high - low), 0, 1), CMA_SIGMA, options)
+        strategy = cma.CMAEvolutionStrategy(
+            np.clip((x0[: len(LENGTHS)] - low) / (high - low), 0, 1), CMA_SIGMA, options
+        )
         while not strategy.stop():
             trials = np.array(strategy.ask())
             strategy.tell(trials, -search(low + trials * (high - low)))

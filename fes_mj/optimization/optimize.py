@@ -5,25 +5,26 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fes_mj.arrays import FloatArray
 from fes_mj.errors import InputError
 from fes_mj.optimization.evolution import cma_es, differential
-from fes_mj.optimization.parallel import HERE, Workers, run_tasks
 from fes_mj.optimization.problem import Problem
 from fes_mj.optimization.random_pursuit import random_pursuit
 from fes_mj.optimization.search import BudgetSpentError, Result, Search, feasible_start, require_feasible
+from fes_mj.parallel import HERE, Workers, run_tasks
 
-Start = NDArray[np.float64] | None
+Start: TypeAlias = FloatArray | None
 
 
 def _pursue(search: Search, start: Start, random: np.random.Generator) -> None:
     random_pursuit(search, feasible_start(search, random) if start is None else start, random)
 
 
-Method = Callable[[Search, Start, np.random.Generator], None]
+Method: TypeAlias = Callable[[Search, Start, np.random.Generator], None]
 METHODS: dict[str, Method] = {
     "differential-evolution": differential,
     "cma-es": cma_es,

@@ -6,14 +6,17 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fes_mj import kinematics
-from fes_mj.errors import InputError, import_extra
-from fes_mj.optimization.cycles import take
-from fes_mj.optimization.problem import LENGTHS, Problem
-from fes_mj.statics import joint_moments, virtual_work
-from fes_mj.torque import JointMoments
+from fes_mj.arrays import FloatArray
+from fes_mj.cycles import take
+from fes_mj.design import Design
+from fes_mj.errors import InputError, require_extra
+from fes_mj.moments import GROUPS, JointMoments
+from fes_mj.optimization.problem import Problem
+from fes_mj.statics import virtual_work
+from fes_mj.torque_map import torque_map
+from fes_mj.variables import LENGTHS
 
 POPULATION = 100
 _UNKNOWN = 10.0  # scales; for the margins of a design refused before they were computed
@@ -26,10 +29,20 @@ class Front:
     x: shape (n, 10). power: W, shape (n, groups). fluctuation: shape (n,), or None if it was no objective.
     """
 
-    x: NDArray[np.float64]
-    power: NDArray[np.float64]
-    fluctuation: NDArray[np.float64] | None
+    x: FloatArray
+    power: FloatArray
+    fluctuation: FloatArray | None
     evaluations: int
+
+    def as_json(self) -> list[dict[str, Any]]:
+        """A dictionary a design."""
+        rows = [
+            {"power_mean_W": dict(zip(GROUPS, power, strict=True)), "x": list(x)}
+            for power, x in zip(self.power.tolist(), self.x.tolist(), strict=True)
+        ]
+        if self.fluctuation is not None:
+            rows = [row | {"fluctuation": each} for row, each in zip(rows, self.fluctuation.tolist(), strict=True)]
+        return rows
 
 
 def pareto_front(
@@ -40,18 +53,20 @@ def pareto_front(
     moments: those of problem.table, in its order. smooth: also the least coefficient of fluctuation of the first.
     Raises InputError if no feasible design was found.
     """
-    import_extra("pymoo", "optimize")
+    require_extra("optimize", "pymoo")
     from pymoo.algorithms.moo.nsga2 import NSGA2
     from pymoo.core.problem import Problem as Vectorized
     from pymoo.optimize import minimize
 
     class Population(Vectorized):
         def __init__(self) -> None:
-            low, high = problem.limits.search[:LENGTHS].T
+            low, high = problem.limits.search[: len(LENGTHS)].T
             objectives = problem.table.sets + smooth
-            super().__init__(n_var=LENGTHS, n_obj=objectives, n_ieq_constr=len(problem.constraints), xl=low, xu=high)
+            super().__init__(
+                n_var=len(LENGTHS), n_obj=objectives, n_ieq_constr=len(problem.constraints), xl=low, xu=high
+            )
 
-        def _evaluate(self, x: NDArray[np.float64], out: dict[str, Any]) -> None:
+        def _evaluate(self, x: FloatArray, out: dict[str, Any]) -> None:
             evaluation = problem.evaluate(x)
             goals = [*-np.nan_to_num(evaluation.power).T]
             if smooth:
@@ -78,15 +93,15 @@ def pareto_front(
     )
 
 
-def fluctuation(design: Any, moments: JointMoments, points: int = 360) -> NDArray[np.float64]:
+def fluctuation(design: Design, moments: JointMoments, points: int = 360) -> FloatArray:
     """Coefficient of fluctuation of energy of two legs half a turn apart, for a batch, shape (designs,).
 
     Largest less smallest surplus of the work done over the mean, by the work of a turn: what a flywheel has to store.
     """
     crank_angle = np.arange(points) * (2 * np.pi / points)
     motion = kinematics.solve(design, crank_angle)
-    leg = virtual_work(motion, *joint_moments(motion, moments))
+    leg = virtual_work(motion, torque_map(moments).along(motion, design.linkage.cadence))
     crank = np.atleast_2d(leg + np.roll(leg, points // 2, axis=-1))
     mean = crank.mean(axis=1, keepdims=True)
     surplus = np.cumsum(crank - mean, axis=1)
-    return np.ptp(surplus, axis=1) / (points * np.abs(mean[:, 0]))
+    return np.asarray(np.ptp(surplus, axis=1) / (points * np.abs(mean[:, 0])))

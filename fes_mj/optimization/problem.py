@@ -4,19 +4,24 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fes_mj.arrays import BoolArray, FloatArray
+from fes_mj.cycles import TURN_POINTS, Cycles, WorkTable, cycles, joint_speeds, take
 from fes_mj.design import Design
+from fes_mj.design_file import load_design
 from fes_mj.errors import InputError
-from fes_mj.optimization.cycles import TURN_POINTS, Cycles, WorkTable, cycles, take
-from fes_mj.optimization.problem_file import VARIABLES, Limits, depth_inside
-from fes_mj.paper.identification import grashof_margin, pack, unpack
-from fes_mj.torque import JOINTS
+from fes_mj.geometry import grashof_margin
+from fes_mj.joints import JOINTS, PerJoint
+from fes_mj.moments import JointMoments
+from fes_mj.optimization.confidence import uncertain_table
+from fes_mj.optimization.problem_file import DEFAULT, VARIED, Limits, depth_inside, load_limits
+from fes_mj.variables import component, replaced
 
-LENGTHS = len(VARIABLES) - 1  # all variables but the gear ratio
+LENGTH_COUNT = len(VARIED) - 1  # all variables but the gear ratio, which comes last
 # A design below any feasible one, and each margin it was refused too early to have counts as ten scales.
 _INFEASIBLE, _UNKNOWN = -1e4, 10.0
 
@@ -44,18 +49,18 @@ class Evaluation:
     margins: the same against their limits.
     """
 
-    x: NDArray[np.float64]
-    power: NDArray[np.float64]
-    values: NDArray[np.float64]
-    margins: NDArray[np.float64]
-    scales: NDArray[np.float64]
+    x: FloatArray
+    power: FloatArray
+    values: FloatArray
+    margins: FloatArray
+    scales: FloatArray
 
     @property
-    def feasible(self) -> NDArray[np.bool_]:
+    def feasible(self) -> BoolArray:
         return np.all(self.margins >= 0, axis=1)
 
     @property
-    def violation(self) -> NDArray[np.float64]:
+    def violation(self) -> FloatArray:
         """Sum of all violations in their scales, shape (n,); zero for feasible designs."""
         return np.where(np.isnan(self.margins), _UNKNOWN, np.maximum(0, -self.margins) / self.scales).sum(axis=1)
 
@@ -65,7 +70,7 @@ class Problem:
     """Most mean crank power of one leg, within limits on lengths, joint ranges, joint speeds and gear ratio.
 
     template: kind, rider, seat and coupler angle of all designs. table: the sets of moments; the first is the one whose
-    power counts. knee_speed, hip_speed: largest mean absolute joint speed, deg/s. caution: with moments as of
+    power counts. joint_speed: largest mean absolute speed of each joint, deg/s. caution: with moments as of
     evidence.uncertain_table, how many standard deviations of the gain over `baseline` (power of a design to beat,
     shape (sets,)) are taken off it.
     """
@@ -73,18 +78,15 @@ class Problem:
     template: Design
     table: WorkTable
     limits: Limits
-    knee_speed: float
-    hip_speed: float
+    joint_speed: PerJoint[float]
     caution: float = 0.0
-    baseline: NDArray[np.float64] | float = 0.0
+    baseline: FloatArray | float = 0.0
     points: int = TURN_POINTS
 
     def __post_init__(self) -> None:
-        for joint in JOINTS:
-            if not 0 < getattr(self, f"{joint}_speed") < math.inf:
-                raise InputError(
-                    f"the {joint} speed limit is {getattr(self, f'{joint}_speed'):g} deg/s; it must be above 0"
-                )
+        for joint, speed in self.joint_speed.items():
+            if not 0 < speed < math.inf:
+                raise InputError(f"the {joint} speed limit is {speed:g} deg/s; it must be above 0")
 
     @property
     def geometry(self) -> tuple[Constraint, ...]:
@@ -112,8 +114,7 @@ class Problem:
             Constraint("knee_max", "deg", False, knee_high + slack, 5.0),
             Constraint("hip_min", "deg", True, hip_low - slack, 5.0),
             Constraint("hip_max", "deg", False, hip_high + slack, 5.0),
-            Constraint("knee_speed", "deg/s", False, self.knee_speed, 10.0),
-            Constraint("hip_speed", "deg/s", False, self.hip_speed, 10.0),
+            *(Constraint(f"{joint}_speed", "deg/s", False, speed, 10.0) for joint, speed in self.joint_speed.items()),
             Constraint("gear_ratio", "", False, self.limits.gear_ratio_max, 0.1),
         )
 
@@ -121,22 +122,21 @@ class Problem:
     def constraints(self) -> tuple[Constraint, ...]:
         return self.geometry + self.motion
 
-    def variables(self, design: Design) -> NDArray[np.float64]:
+    def variables(self, design: Design) -> FloatArray:
         """The ten variables x = [R1, R2, R6, R7, R8, R9, R10, lambda] of a design, shape (10,), m and 1."""
-        return np.append(pack(design.linkage), design.linkage.gear_ratio)
+        return np.array([component(design, name) for name in VARIED])
 
-    def batch(self, x: NDArray[np.float64]) -> Design:
+    def batch(self, x: FloatArray) -> Design:
         """The designs of a population, shape (n, 9) or (n, 10), as a batch."""
-        linkage = unpack(self.template.linkage, x.T[:LENGTHS, :, None])
-        gear_ratio: Any = x[:, LENGTHS:] if x.shape[1] > LENGTHS else np.ones((len(x), 1))
-        return replace(self.template, linkage=replace(linkage, gear_ratio=gear_ratio))
+        if x.shape[1] == LENGTH_COUNT:
+            x = np.column_stack([x, np.ones(len(x))])
+        return replaced(self.template, dict(zip(VARIED, x.T[..., None], strict=True)))
 
-    def design(self, x: NDArray[np.float64], name: str) -> Design:
+    def design(self, x: FloatArray, name: str) -> Design:
         """One design from its ten variables, shape (10,)."""
-        linkage = unpack(self.template.linkage, x[:LENGTHS])
-        return replace(self.template, name=name, linkage=replace(linkage, gear_ratio=float(x[LENGTHS])))
+        return replace(replaced(self.template, dict(zip(VARIED, x.tolist(), strict=True))), name=name)
 
-    def evaluate(self, x: NDArray[np.float64]) -> Evaluation:
+    def evaluate(self, x: FloatArray) -> Evaluation:
         """Power and constraints of a population, shape (n, 10).
 
         With shape (n, 9) each design gets the largest gear ratio its joint speeds allow: power is proportional to it.
@@ -148,26 +148,28 @@ class Problem:
         turn = cycles(take(design, sound), self.table, self.points) if sound.any() else None
         motion = np.full((len(x), len(self.motion)), np.nan)
         power = np.full((len(x), self.table.sets), np.nan)
-        gear_ratio = x[:, LENGTHS].copy() if x.shape[1] > LENGTHS else np.full(len(x), self.limits.gear_ratio_max)
+        gear_ratio = (
+            x[:, LENGTH_COUNT].copy() if x.shape[1] > LENGTH_COUNT else np.full(len(x), self.limits.gear_ratio_max)
+        )
         if turn:
             # cadence and joint speeds at gear ratio 1
             cadence = replace(self.template.linkage, gear_ratio=1.0).cadence
-            speeds = {joint: np.degrees(turn.travel[joint]) * cadence / (2 * np.pi) for joint in JOINTS}
-            if x.shape[1] == LENGTHS:
-                fastest = np.minimum(self.knee_speed / speeds["knee"], self.hip_speed / speeds["hip"])
+            speeds = turn.travel.map(lambda travel: np.degrees(travel) * cadence / (2 * np.pi))
+            if x.shape[1] == LENGTH_COUNT:
+                fastest = np.minimum(*(self.joint_speed[joint] / speeds[joint] for joint in JOINTS))
                 gear_ratio[sound] = np.fmin(fastest * (1 - 1e-12), self.limits.gear_ratio_max)
             power[sound] = turn.work * (cadence / (2 * np.pi) * gear_ratio[sound, None])
             motion[sound] = _motion_values(turn, speeds, gear_ratio[sound])
         values = np.hstack([lengths, motion])
         scales = np.array([constraint.scale for constraint in self.constraints])
-        filled = np.column_stack([x[:, :LENGTHS], gear_ratio])
+        filled = np.column_stack([x[:, :LENGTH_COUNT], gear_ratio])
         return Evaluation(filled, power, values, _margins(self.constraints, values), scales)
 
-    def merit(self, evaluation: Evaluation) -> NDArray[np.float64]:
+    def merit(self, evaluation: Evaluation) -> FloatArray:
         """What is maximised, shape (n,): W if feasible; every infeasible design ranks below, by its violation."""
         return np.where(evaluation.feasible, self.objective(evaluation.power), _INFEASIBLE - evaluation.violation)
 
-    def objective(self, power: NDArray[np.float64]) -> NDArray[np.float64]:
+    def objective(self, power: FloatArray) -> FloatArray:
         """Power of the first set of moments less `caution` standard deviations of the gain over the baseline, W."""
         gain = power - self.baseline
         return power[:, 0] - self.caution * np.linalg.norm(gain[:, 1:], axis=1) if self.caution else power[:, 0]
@@ -180,7 +182,7 @@ class Problem:
             if margin < 0
         ]
 
-    def _lengths(self, design: Design) -> NDArray[np.float64]:
+    def _lengths(self, design: Design) -> FloatArray:
         """Values of the constraints on lengths, shape (n, 8)."""
         linkage, polygon = design.linkage, self.limits.polygon
         others = np.stack([np.abs(linkage.pivot_to_crank), linkage.coupler, linkage.rocker])
@@ -190,7 +192,7 @@ class Problem:
             linkage.foot,
             linkage.pedal_arm,
             others.min(axis=0) - linkage.crank,
-            grashof_margin(linkage),
+            grashof_margin(design),
         )
         pivots = (np.asarray(linkage.ground), np.asarray(linkage.crank_centre))
         return np.column_stack(
@@ -198,13 +200,41 @@ class Problem:
         )
 
 
-def _motion_values(
-    turn: Cycles, speeds: dict[str, NDArray[np.float64]], gear_ratio: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _motion_values(turn: Cycles, speeds: PerJoint[FloatArray], gear_ratio: FloatArray) -> FloatArray:
     """Values of the constraints on the turn, in their order, shape (n, 8)."""
     ranges = [np.degrees(side[joint]) for joint in JOINTS for side in (turn.low, turn.high)]
     return np.column_stack([turn.reach, *ranges, *(speeds[joint] * gear_ratio for joint in JOINTS), gear_ratio])
 
 
-def _margins(constraints: tuple[Constraint, ...], values: NDArray[np.float64]) -> NDArray[np.float64]:
+def _margins(constraints: tuple[Constraint, ...], values: FloatArray) -> FloatArray:
     return np.column_stack([c.margin(values[:, column]) for column, c in enumerate(constraints)])
+
+
+def make_problem(
+    kind: str,
+    moments: JointMoments,
+    *,
+    compared_with: str = "trt",
+    start: str | None = None,
+    limits: Path = DEFAULT,
+    knee_speed: float | None = None,
+    hip_speed: float | None = None,
+    caution: float = 0.0,
+) -> Problem:
+    """The problem for a kind of six-bar ("crt", "cdt") under joint moments.
+
+    compared_with: the design whose mean joint speeds are the limits (unless given, deg/s) and whose power is the
+    baseline. start: a design whose rider, seat and coupler angle are kept; by default a printed one. limits: a problem
+    file. Raises InputError for what cannot be used, and for a start of another kind.
+    """
+    template = load_design(start or ("r1" if kind == "crt" else "d1"))
+    if template.linkage.kind != kind:
+        raise InputError(
+            f"--start {start} is a {template.linkage.kind}, not a {kind}; start from a design of that kind"
+        )
+    other, table = load_design(compared_with), uncertain_table(moments) if caution else WorkTable.of(moments)
+    # a hair above, so that the design itself is within its own limits
+    own, given = joint_speeds(other, table).map(lambda speed: speed * (1 + 1e-9)), PerJoint(knee_speed, hip_speed)
+    speed = PerJoint.of(lambda joint: own[joint] if given[joint] is None else given[joint])
+    baseline = cycles(other, table).work[0] * other.linkage.cadence / (2 * math.pi)
+    return Problem(template, table, load_limits(limits), speed, caution, baseline)

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fes_mj.arrays import FloatArray
 from fes_mj.optimization.search import BudgetSpentError, Search
 
 STEP = 0.01  # of every variable: m, and 1 for the gear ratio (Eq. 18)
@@ -12,9 +12,7 @@ PATIENCE = 10_000  # feasible trials in a row without improvement
 _SMALLEST_BLOCK, _LARGEST_BLOCK = 16, 2048
 
 
-def random_pursuit(
-    search: Search, start: NDArray[np.float64], random: np.random.Generator, patience: int = PATIENCE
-) -> None:
+def random_pursuit(search: Search, start: FloatArray, random: np.random.Generator, patience: int = PATIENCE) -> None:
     """Pursue from a feasible start, shape (10,), until `patience` feasible trials in a row brought nothing.
 
     Trials are evaluated in blocks, in which those after an improvement are discarded and not counted: the

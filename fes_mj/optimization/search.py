@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fes_mj.arrays import FloatArray
 from fes_mj.errors import InputError
-from fes_mj.optimization.problem import LENGTHS, Problem
+from fes_mj.optimization.problem import Problem
+from fes_mj.optimization.problem_file import VARIED
 
-Progress = Callable[[int, float], None]  # evaluations so far, best merit
+Progress: TypeAlias = Callable[[int, float], None]  # evaluations so far, best merit
 _SAMPLE = 2000
 
 
@@ -26,10 +28,10 @@ class Result:
     x: shape (10,). merit: see Problem.merit. history: evaluations and merit at each improvement, shape (k, 2).
     """
 
-    x: NDArray[np.float64]
+    x: FloatArray
     merit: float
     evaluations: int
-    history: NDArray[np.float64]
+    history: FloatArray
 
 
 class Search:
@@ -37,11 +39,11 @@ class Search:
 
     def __init__(self, problem: Problem, budget: int, progress: Progress | None = None) -> None:
         self.problem, self.budget, self.evaluations = problem, budget, 0
-        self.best_x, self.best = np.full(LENGTHS + 1, np.nan), -np.inf
+        self.best_x, self.best = np.full(len(VARIED), np.nan), -np.inf
         self._history: list[tuple[int, float]] = []
         self._progress = progress
 
-    def __call__(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+    def __call__(self, x: FloatArray) -> FloatArray:
         """Merit of each row of x, shape (n, 9) or (n, 10); see Problem.evaluate."""
         rest = self.budget - self.evaluations
         if rest <= 0:
@@ -53,7 +55,7 @@ class Search:
             raise BudgetSpentError
         return merit
 
-    def note(self, x: NDArray[np.float64], merit: NDArray[np.float64]) -> None:
+    def note(self, x: FloatArray, merit: FloatArray) -> None:
         """Count evaluations made elsewhere; x of shape (n, 10) in the order they were made."""
         top = int(np.argmax(merit))
         if merit[top] > self.best:
@@ -65,21 +67,17 @@ class Search:
 
     def result(self) -> Result:
         """The best design so far. Raises InputError, saying what stood in the way, if none was feasible."""
-        evaluation = self.problem.evaluate(self.best_x[None])
-        if not evaluation.feasible[0]:
-            broken = ", ".join(
-                f"{v['name']} is {v['value']:.4g} {v['unit']} (limit {v['limit']:.4g})".replace("  ", " ")
-                for v in self.problem.violations(evaluation)
-            )
+        broken = violations_text(self.problem, self.best_x)
+        if broken is not None:
             kind = self.problem.template.linkage.kind
             raise InputError(
-                f"no feasible {kind} found in {self.evaluations} evaluations; the closest "
-                f"violates: {broken or 'assembly'}. Loosen a limit, widen the design space or raise --budget"
+                f"no feasible {kind} found in {self.evaluations} evaluations; the closest violates: {broken}. "
+                "Loosen a limit, widen the design space or raise --budget"
             )
         return Result(self.best_x, self.best, self.evaluations, np.array(self._history))
 
 
-def feasible_start(search: Search, random: np.random.Generator) -> NDArray[np.float64]:
+def feasible_start(search: Search, random: np.random.Generator) -> FloatArray:
     """A random feasible design, ten variables, from the search ranges; every design tried until then is counted.
 
     Raises BudgetSpentError if none turns up within the budget.
@@ -96,12 +94,20 @@ def feasible_start(search: Search, random: np.random.Generator) -> NDArray[np.fl
     raise BudgetSpentError
 
 
-def require_feasible(problem: Problem, x: NDArray[np.float64], name: str) -> None:
+def require_feasible(problem: Problem, x: FloatArray, name: str) -> None:
     """Raise InputError naming the violated constraints if a start, shape (10,), is not feasible."""
+    broken = violations_text(problem, x)
+    if broken is not None:
+        raise InputError(f"the start {name} is not feasible: {broken}")
+
+
+def violations_text(problem: Problem, x: FloatArray) -> str | None:
+    """Which constraints a design, shape (10,), violates and by how much; None if it is feasible."""
     evaluation = problem.evaluate(x[None])
-    if not evaluation.feasible[0]:
-        broken = "; ".join(
-            f"{v['name']} is {v['value']:.4g} {v['unit']}, limit {v['limit']:.4g}".replace(" ,", ",")
-            for v in problem.violations(evaluation)
-        )
-        raise InputError(f"the start {name} is not feasible: {broken or 'it does not close over the whole turn'}")
+    if evaluation.feasible[0]:
+        return None
+    parts = (
+        f"{v['name']} is {v['value']:.4g} {v['unit']}".rstrip() + f" (limit {v['limit']:.4g})"
+        for v in problem.violations(evaluation)
+    )
+    return ", ".join(parts) or "it does not close over the whole turn"

@@ -6,11 +6,11 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fes_mj.arrays import FloatArray
+from fes_mj.cycles import WorkTable, cycles
 from fes_mj.design import Design
-from fes_mj.optimization.cycles import WorkTable, cycles
-from fes_mj.paper.identification import pack, unpack
+from fes_mj.variables import lengths, with_lengths
 
 MANUFACTURING = 0.001  # m, each length and each coordinate of R1 and R7
 LEG = 0.05  # m, thigh and shank independently
@@ -31,12 +31,11 @@ class Tolerance(NamedTuple):
 
 def to_manufacturing(design: Design, table: WorkTable, random: np.random.Generator) -> Tolerance:
     """All lengths of the linkage off by up to MANUFACTURING, uniformly and independently."""
-    lengths = pack(design.linkage)
+    drawn = lengths(design)
     # R7, R8, R9 and R10 do not exist in a TRT, and are zero in it
-    real = lengths != 0 if design.linkage.kind == "trt" else np.ones(len(lengths), bool)
-    shift = random.uniform(-MANUFACTURING, MANUFACTURING, (SAMPLES, len(lengths))) * real
-    linkage = unpack(design.linkage, (lengths + shift).T[..., None])
-    return _tolerance(replace(design, linkage=linkage), table)
+    real = drawn != 0 if design.linkage.kind == "trt" else np.ones(len(drawn), bool)
+    shift = random.uniform(-MANUFACTURING, MANUFACTURING, (SAMPLES, len(drawn))) * real
+    return _tolerance(with_lengths(design, (drawn + shift).T[..., None]), table)
 
 
 def to_rider(design: Design, table: WorkTable, random: np.random.Generator) -> Tolerance:
@@ -47,7 +46,7 @@ def to_rider(design: Design, table: WorkTable, random: np.random.Generator) -> T
 
 
 def _tolerance(designs: Design, table: WorkTable) -> Tolerance:
-    power: NDArray[np.float64] = cycles(designs, table).work[:, 0] * designs.linkage.cadence / (2 * np.pi)
+    power: FloatArray = cycles(designs, table).work[:, 0] * designs.linkage.cadence / (2 * np.pi)
     turning = np.isfinite(power)
     powers = np.where(turning, power, 0.0)
     return Tolerance(float(turning.mean()), float(np.percentile(powers, PERCENTILE)), float(np.median(powers)))

@@ -3,60 +3,77 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fes_mj.crosscheck import Case, cross_check
+from fes_mj.cycles import WorkTable, cycles, joint_speeds
 from fes_mj.design import Design
+from fes_mj.joints import PerJoint
+from fes_mj.moments import JointMoments
 from fes_mj.optimization.confidence import Gain
-from fes_mj.optimization.cycles import WorkTable, cycles, joint_speeds
 from fes_mj.optimization.tolerance import Tolerance, to_manufacturing, to_rider
-from fes_mj.statics import quasi_static
-from fes_mj.torque import JointMoments
-from fes_mj.uncertainty import difference_sd
-
-if TYPE_CHECKING:
-    from fes_mj.crosscheck import CrossCheck
+from fes_mj.statics import difference_sd, quasi_static
 
 
 @dataclass(frozen=True)
 class Winner:
     """A design with everything that was found out about it.
 
-    speeds: mean absolute joint speed, deg/s. reversals: of each joint in a turn. gain: over `rival` under the same
-    moments, None for moments without error bars.
+    case: simulated and cross-checked. joint_speed: mean absolute, deg/s. reversals: of each joint in a turn. gain:
+    over `compared_with` under the same moments, None for moments without error bars.
     """
 
-    design: Design
-    rival: Design
-    check: CrossCheck
-    speeds: dict[str, float]
-    reversals: dict[str, int]
+    case: Case
+    compared_with: Design
+    joint_speed: PerJoint[float]
+    reversals: PerJoint[int]
     gain: Gain | None
     manufacturing: Tolerance
     rider: Tolerance
 
+    @property
+    def design(self) -> Design:
+        return self.case.design
 
-def assess(design: Design, rival: Design, moments: JointMoments, seed: int = 0) -> Winner:
-    """Simulate a design against statics, compare it with a rival, sample its tolerances."""
-    from fes_mj.crosscheck import refined_cross_check
+    @property
+    def rows(self) -> list[tuple[str, str]]:
+        """What was found out, as text."""
+        static, run = self.case.static, self.case.simulation
+        cells = [
+            ("mean crank power by statics, W", f"{static.power_mean:.3f}"),
+            ("mean crank power simulated, W", f"{run.power_mean:.3f}"),
+            ("time step of the simulation, ms", f"{1e3 * run.timestep:.3g}"),
+            ("work per turn, J", f"{static.work_per_turn:.3f}"),
+            ("cadence, rpm", f"{static.summary()['cadence_rpm']:.1f}"),
+            *((f"mean {joint} speed, deg/s", f"{speed:.1f}") for joint, speed in self.joint_speed.items()),
+            ("reversals of knee and hip in a turn", f"{self.reversals.knee}, {self.reversals.hip}"),
+        ]
+        if self.gain:
+            gain = f"{self.gain.mean:+.2f} ± {self.gain.deviation:.2f}"
+            cells.append((f"gain over {self.compared_with.name}, W", gain))
+        for what, tolerance in (("lengths ±1 mm", self.manufacturing), ("thigh, shank ±5 cm", self.rider)):
+            cells.append((f"{what}: can turn", f"{100 * tolerance.turning:.1f} %"))
+            cells.append((f"{what}: 5th percentile of power, W", f"{tolerance.power_low:.2f}"))
+        return cells
 
+
+def assess(design: Design, compared_with: Design, moments: JointMoments, seed: int = 0) -> Winner:
+    """Simulate a design against statics, compare it with another one, sample its tolerances."""
     table, random = WorkTable.of(moments), np.random.default_rng(seed)
-    turn = cycles(design, table)
     return Winner(
-        design=design,
-        rival=rival,
-        check=refined_cross_check(design, moments),
-        speeds=joint_speeds(design, table),
-        reversals={joint: int(count[0]) for joint, count in turn.reversals.items()},
-        gain=gain_over(design, rival, moments),
+        case=cross_check(design, moments),
+        compared_with=compared_with,
+        joint_speed=joint_speeds(design, table),
+        reversals=cycles(design, table).reversals.map(lambda count: int(count[0])),
+        gain=gain_over(design, compared_with, moments),
         manufacturing=to_manufacturing(design, table, random),
         rider=to_rider(design, table, random),
     )
 
 
-def gain_over(design: Design, rival: Design, moments: JointMoments) -> Gain | None:
-    """Power gained over a rival, each at its own cadence; None for moments whose error is not known."""
-    own, other = quasi_static(design, moments), quasi_static(rival, moments)
+def gain_over(design: Design, compared_with: Design, moments: JointMoments) -> Gain | None:
+    """Power gained over another design, each at its own cadence; None for moments whose error is not known."""
+    own, other = quasi_static(design, moments), quasi_static(compared_with, moments)
     deviation = difference_sd(own, other)
     return None if deviation is None else Gain(own.power_mean - other.power_mean, deviation)

@@ -1,40 +1,27 @@
-"""The paper's figures from our numbers, and one it lacks; knee cyan, hip magenta, total blue throughout."""
+"""The paper's figures from our numbers, and one it lacks."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Iterable
+from typing import Any, TypeAlias
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
-from fes_mj.crosscheck import reference_power
-from fes_mj.design import BODIES
+from fes_mj.arrays import FloatArray
+from fes_mj.joints import JOINTS
 from fes_mj.kinematics import solve
+from fes_mj.moments import GROUPS
 from fes_mj.paper.printed import SIX_BARS
 from fes_mj.paper.reconstruction import Posterior
 from fes_mj.paper.runs import Runs
-from fes_mj.segments import foot_points
-from fes_mj.simulation import Simulation
-from fes_mj.torque import GROUPS, JOINTS, TOP_DEAD_CENTRE, joint_angles, reference_ranges, source_angle
+from fes_mj.reference_tricycle import PAPER_TRICYCLE
+from fes_mj.style import COLOURS, LINKS, X_LABEL
+from fes_mj.viewing.charts import draw_linkage, over_turn, turn_axis
 
-Posteriors = dict[str, Posterior]
+Posteriors: TypeAlias = dict[str, Posterior]
 
-COLOUR = {"knee": "#00a2bf", "hip": "#c4189a", "total": "#1f3fd8"}
-LINK_COLOUR = {"thigh": "#b08968", "shank": "#cda27f", "crank": "#e07d28", "rocker": "#736bab", "coupler": "#5c945c"}
-STYLE: dict[Any, Any] = {
-    "font.size": 9,
-    "axes.grid": True,
-    "grid.alpha": 0.25,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "legend.frameon": False,
-    "legend.fontsize": 8,
-    "lines.linewidth": 1.5,
-    "svg.hashsalt": "fes_mj",  # the same file from the same numbers
-}
 _TURN = np.radians(np.arange(0.0, 360.5, 1.0))
 
 
@@ -43,7 +30,7 @@ def moments_over_crank(runs: Runs, posteriors: Posteriors) -> Figure:
     figure, axes = _grid(1, 2, (7.2, 3.0))
     for ax, (group, posterior) in zip(axes.flat, posteriors.items(), strict=True):
         for joint in JOINTS:
-            _band(ax, np.degrees(_TURN + TOP_DEAD_CENTRE), posterior.curve(joint, _TURN), joint, joint)
+            _band(ax, np.degrees(_TURN + PAPER_TRICYCLE.top_dead_centre), posterior.curve(joint, _TURN), joint, joint)
         _label(ax, group.upper(), "crank angle, deg (top dead centre at 22.4)", "joint moment, N m")
     axes.flat[0].legend(title="mean, band of one sd")
     return figure
@@ -62,7 +49,7 @@ def moments_over_joint_angle(runs: Runs, posteriors: Posteriors) -> Figure:
     """Figure 5: the torque maps, extension and flexion told apart."""
     figure, axes = _grid(1, 2, (7.2, 3.2))
     for ax, (group, posterior) in zip(axes.flat, posteriors.items(), strict=True):
-        _maps(ax, posterior, reference_ranges())
+        _maps(ax, posterior, PAPER_TRICYCLE.ranges.items())
         _label(ax, group.upper(), "joint angle, deg", "joint moment, N m")
     _legend_below(figure, axes, columns=4)
     return figure
@@ -80,11 +67,12 @@ def design_space(runs: Runs, posteriors: Posteriors) -> Figure:
         ax.plot([pivot.real, centre.real], [pivot.imag, centre.imag], color="0.7", lw=1)
         for point, body, title in ((pivot, "rocker", "rocker pivot"), (centre, "crank", "crank centre")):
             label = f"{name.upper()} {title}"
-            ax.plot(point.real, point.imag, markers[name], color=LINK_COLOUR[body], label=label)
+            ax.plot(point.real, point.imag, markers[name], color=LINKS[body], label=label)
     trt = runs.static["trt", "p1p2"].design.linkage.crank_centre
-    ax.plot(trt.real, trt.imag, "*", ms=9, color=LINK_COLOUR["crank"], label="TRT crank centre")
-    _label(ax, "Usable region of the paper: only in its picture, not in its text", "x, m (rider faces left)", "y, m")
+    ax.plot(trt.real, trt.imag, "*", ms=9, color=LINKS["crank"], label="TRT crank centre")
+    _label(ax, "Where the hip, the rocker pivots and the crank centres lie", X_LABEL, "y, m")
     ax.set_aspect("equal")
+    ax.xaxis.set_inverted(True)
     ax.legend(loc="center left", bbox_to_anchor=(1.01, 0.5))
     return figure
 
@@ -94,10 +82,11 @@ def truncated_maps(runs: Runs, posteriors: Posteriors) -> Figure:
     figure, axes = _grid(2, 2, (7.2, 5.4))
     for row, name in zip(axes, ("r2", "d1"), strict=True):
         for ax, (group, posterior) in zip(row, posteriors.items(), strict=True):
-            angles = joint_angles(runs.static[name, group].motion)
-            _maps(ax, posterior, {joint: (angle.min(), angle.max()) for joint, (angle, _) in angles.items()})
+            angles = runs.static[name, group].joint_angle
+            _maps(ax, posterior, ((joint, (angle.min(), angle.max())) for joint, angle in angles.items()))
             _label(ax, f"{name.upper()}, {group.upper()}", "joint angle, deg", "joint moment, N m")
-            ax.set_xlim(*np.degrees((reference_ranges()["knee"][0] - 0.04, reference_ranges()["knee"][1] + 0.04)))
+            low, high = PAPER_TRICYCLE.ranges.knee
+            ax.set_xlim(*np.degrees((low - 0.04, high + 0.04)))
     _legend_below(figure, axes, columns=4)
     return figure
 
@@ -116,25 +105,13 @@ def d1_to_scale(runs: Runs, posteriors: Posteriors) -> Figure:
     """Figure 13: D1 and a leg to scale at one crank angle, with the paths of knee, pedal and crank pin."""
     figure, axes = _grid(1, 1, (7.2, 4.2))
     (ax,) = axes.flat
-    design = runs.static["d1", "p1p2"].design
-    motion, pose = solve(design, _TURN), solve(design, np.array([np.radians(60.0)]))
-    for name in ("knee", "pedal", "crank_pin", "rocker_joint"):
-        path = motion.points[name].value
-        ax.plot(path.real, path.imag, color="0.65", lw=0.8, ls=(0, (4, 2)))
-    at = {name: complex(np.ravel(jet.value)[0]) for name, jet in pose.points.items()}
-    ankle = at["knee"] + foot_points(design)[0] * complex(np.ravel(pose.direction("shank"))[0])
-    for body, (origin, tip) in BODIES.items():
-        ends = np.array([at[origin], *([ankle] if body == "shank" else []), at[tip]])
-        ax.plot(ends.real, ends.imag, color=LINK_COLOUR[body], lw=4, solid_capstyle="round", label=body, zorder=2)
-    arm = np.array([at["rocker_joint"], at["pedal"], at["crank_pin"]])
-    ax.fill(arm.real, arm.imag, color=LINK_COLOUR["coupler"], alpha=0.35, lw=0)
-    for name, point in at.items():
-        fixed = name in ("hip", "crank_centre", "rocker_pivot")
-        ax.plot(point.real, point.imag, "ks" if fixed else "ko", ms=6 if fixed else 4, zorder=3)
+    design, angle = runs.static["d1", "p1p2"].design, np.radians(60.0)
+    draw_linkage(ax, design, float(angle), ("knee", "pedal", "crank_pin", "rocker_joint"))
+    for name, jet in solve(design, np.array([angle])).points.items():
+        point = complex(np.ravel(jet.value)[0])
         ax.annotate(name.replace("_", " "), (point.real, point.imag), xytext=(5, 5), textcoords="offset points")
-    _label(ax, "D1 at 60 deg of crank angle; squares are fixed to the frame", "x, m (rider faces left)", "y, m")
-    ax.set_aspect("equal")
-    ax.legend(loc="upper right")
+    ax.set_title("D1 at 60 deg of crank angle; squares are fixed to the frame", loc="left", weight="bold")
+    ax.legend(loc="upper left")
     return figure
 
 
@@ -144,13 +121,13 @@ def smoothness(runs: Runs, posteriors: Posteriors) -> Figure:
     figure, axes = _grid(len(names), 2, (7.2, 7.2), sharey="row")
     for row, name in zip(axes, names, strict=True):
         for ax, legs in zip(row, (1, 2), strict=True):
-            run = runs.dynamic[name, "p1p2", legs].simulation
-            angle, order = _angles(run)
-            ax.plot(angle, run.power[order], color="0.45", label="MuJoCo, with segment masses")
-            ax.plot(angle, reference_power(run, 0.0)[order], color=COLOUR["total"], label="quasi-static, no masses")
-            ax.axhline(legs * run.power_mean, color="k", lw=0.8, ls=":", label="mean")
-            title = f"{name.upper()}, P1P2, {'one leg' if legs == 1 else 'two legs half a turn apart'}"
-            _turn_axis(ax, title)
+            case = runs.dynamic[name, "p1p2", legs]
+            run, mean = case.simulation, legs * case.simulation.power_mean
+            angle, power, massless = over_turn(run.crank_angle, run.power, case.reference_power(mass_scale=0.0))
+            ax.plot(angle, power, color=COLOURS["mujoco"], label="MuJoCo, with segment masses")
+            ax.plot(angle, massless, color=COLOURS["quasi-static"], label="quasi-static, no masses")
+            ax.axhline(mean, color="k", lw=0.8, ls=":", label="mean")
+            _turn(ax, f"{name.upper()}, P1P2, {'one leg' if legs == 1 else 'two legs half a turn apart'}")
     _legend_below(figure, axes)
     return figure
 
@@ -179,9 +156,9 @@ def _label(ax: Axes, title: str, x: str, y: str) -> None:
     ax.label_outer()
 
 
-def _turn_axis(ax: Axes, title: str) -> None:
+def _turn(ax: Axes, title: str) -> None:
+    turn_axis(ax)
     _label(ax, title, "crank angle, deg", "crank power, W")
-    ax.set(xlim=(0, 360), xticks=range(0, 361, 90))
 
 
 def _legend_below(figure: Figure, axes: Any, columns: int = 3) -> None:
@@ -191,43 +168,35 @@ def _legend_below(figure: Figure, axes: Any, columns: int = 3) -> None:
 
 def _band(ax: Axes, x: Any, curve: tuple[Any, Any], joint: str, label: str, style: str = "-") -> None:
     mean, deviation = curve
-    ax.plot(x, mean, style, color=COLOUR[joint], label=label)
-    ax.fill_between(x, mean - deviation, mean + deviation, color=COLOUR[joint], alpha=0.15, lw=0)
+    ax.plot(x, mean, style, color=COLOURS[joint], label=label)
+    ax.fill_between(x, mean - deviation, mean + deviation, color=COLOURS[joint], alpha=0.15, lw=0)
 
 
-def _maps(ax: Axes, posterior: Posterior, ranges: dict[str, tuple[float, float]]) -> None:
+def _maps(ax: Axes, posterior: Posterior, ranges: Iterable[tuple[str, tuple[float, float]]]) -> None:
     """Moment over joint angle within the given ranges (rad), with the jumps that close them."""
-    for joint, (low, high) in ranges.items():
+    for joint, (low, high) in ranges:
         angle = np.linspace(low, high, 150)
         branches = {}
         for name, sign, style in (("extension", 1.0, "-"), ("flexion", -1.0, "--")):
-            curve = posterior.curve(joint, source_angle(joint, angle, sign))
+            curve = posterior.curve(joint, PAPER_TRICYCLE.source_angle(joint, angle, sign))
             _band(ax, np.degrees(angle), curve, joint, f"{joint}, {name}", style)
             branches[name] = curve[0]
         for end in (0, -1):
             jump = [branches["extension"][end], branches["flexion"][end]]
-            ax.plot([np.degrees(angle[end])] * 2, jump, ":", color=COLOUR[joint], lw=1)
+            ax.plot([np.degrees(angle[end])] * 2, jump, ":", color=COLOURS[joint], lw=1)
 
 
 def _power(ax: Axes, runs: Runs, name: str, group: str) -> None:
     """Quasi-static power of knee, hip and both; MuJoCo's with next to no masses (dots) and with all."""
-    static, result = runs.static[name, group], runs.dynamic[name, group, 1]
-    every, degrees = slice(None, None, 10), np.degrees(static.crank_angle)
-    for joint, moment in (("knee", static.knee_moment), ("hip", static.hip_moment)):
-        power = static.cadence * moment * joint_angles(static.motion)[joint][1]
-        ax.plot(degrees[every], power[every], color=COLOUR[joint], label=f"{joint}, quasi-static")
-    ax.plot(degrees[every], static.power[every], color=COLOUR["total"], label="total, quasi-static")
-    angle, order = _angles(result.massless)
-    ax.plot(angle[::6], result.massless.power[order][::6], "k.", ms=3, label="MuJoCo, nearly massless")
-    angle, order = _angles(result.simulation)
+    static, case = runs.static[name, group], runs.dynamic[name, group, 1]
+    for joint in JOINTS:
+        power = static.power_of(joint)
+        ax.plot(*over_turn(static.crank_angle, power), color=COLOURS[joint], label=f"{joint}, quasi-static")
+    total = over_turn(static.crank_angle, static.power)
+    ax.plot(*total, color=COLOURS["total"], label="total, quasi-static")
+    massless = over_turn(case.massless.crank_angle, case.massless.power, points=40)
+    ax.plot(*massless, ".", color=COLOURS["mujoco"], ms=4, label="MuJoCo, nearly massless")
     label = "MuJoCo, with segment masses"
-    ax.plot(angle, result.simulation.power[order], color="0.55", lw=0.9, ls=(0, (4, 2)), label=label)
-    _turn_axis(ax, f"{name.upper()}, {group.upper()}: mean {static.power_mean:.1f} ± {static.power_sd:.1f} W")
-
-
-def _angles(run: Simulation) -> tuple[NDArray[np.float64], NDArray[np.intp]]:
-    """Crank angle in deg from 0 to 360 at about 240 steps of the turn, and the steps in this order."""
-    angle = np.degrees(run.crank_angle) % 360
-    order = np.argsort(angle)
-    order = order[:: max(1, len(order) // 240)]
-    return angle[order], order
+    massive = over_turn(case.simulation.crank_angle, case.simulation.power)
+    ax.plot(*massive, color=COLOURS["mujoco"], lw=0.9, ls=(0, (4, 2)), label=label)
+    _turn(ax, f"{name.upper()}, {group.upper()}: mean {static.power_mean:.1f} ± {static.power_sd:.1f} W")

@@ -6,17 +6,15 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from fes_mj.crosscheck import reference_power
+from fes_mj.arrays import FloatArray
 from fes_mj.design import TRICYCLE_SPEED
+from fes_mj.moments import GROUPS
 from fes_mj.paper.printed import SIX_BARS, table1
 from fes_mj.paper.runs import Runs, joint_speed
-from fes_mj.paper.table import Table
-from fes_mj.statics import QuasiStatic, quasi_static
-from fes_mj.torque import GROUPS
+from fes_mj.statics import QuasiStatic, quasi_static, ratio_sd
+from fes_mj.table import Table
 from fes_mj.torque_velocity import TorqueVelocity, load_torque_velocity
-from fes_mj.uncertainty import ratio_sd
 
 TRICYCLE_MASS = 15.0  # kg, assumption: a light recumbent tricycle
 
@@ -74,10 +72,10 @@ def hill_table(runs: Runs) -> Table:
 def smoothness_table(runs: Runs) -> Table:
     """Swing of the crank power: muscles alone, segment masses alone, both; one leg and two."""
     rows = []
-    for (name, group, legs), result in runs.dynamic.items():
-        run = result.simulation
-        muscle = reference_power(run, 0.0)
-        masses = reference_power(run) - muscle
+    for (name, group, legs), case in runs.dynamic.items():
+        run = case.simulation
+        muscle = case.reference_power(mass_scale=0.0)
+        masses = case.reference_power() - muscle
         energy = [energy_swing(power, run.cadence) for power in (muscle, run.power)]
         work = 2 * np.pi * muscle.mean() / run.cadence
         inertia = (run.design.rider.mass + TRICYCLE_MASS) * TRICYCLE_SPEED**2
@@ -112,7 +110,7 @@ def at_knee_speed(result: QuasiStatic, mean_speed: float) -> QuasiStatic:
     return quasi_static(result.design, result.moments, factor * result.cadence)
 
 
-def energy_swing(power: NDArray[np.float64], cadence: float) -> float:
+def energy_swing(power: FloatArray, cadence: float) -> float:
     """Largest less smallest energy stored over the turn, J, when the load takes the mean of `power` (whole turns)."""
     seconds = 2 * np.pi / cadence / len(power)
     return float(np.ptp(np.cumsum(power - power.mean()))) * seconds

@@ -6,18 +6,19 @@ lengths with the eight range limits of Table 1 and the Grashof condition as cons
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import least_squares, minimize
 
-from fes_mj import kinematics
-from fes_mj.design import Design, Linkage
-from fes_mj.paper.printed import Table1Row
+from fes_mj.arrays import FloatArray
+from fes_mj.design import Design
+from fes_mj.geometry import grashof_margin, joint_ranges
+from fes_mj.variables import lengths, with_lengths
+from fes_mj.verification.case import Expected
 
-ROUNDING = 0.005  # m, Table 2 is rounded to 1 cm
+LENGTH_ROUNDING = 0.005  # m, Table 2 is rounded to 1 cm
 SEAT_ANGLE, COUPLER_ANGLE = np.radians(30.0), np.radians(90.0)  # in no table of the paper: what fits (readings.py)
 RANGE_TOLERANCE = 0.49  # deg, Table 1 is rounded to 1 deg; a little inside, so that rounding the result is safe
 _STARTS = 6
@@ -29,30 +30,29 @@ class Identification:
     """Outcome for one design: the identified linkage, or the closest try when `found` is false."""
 
     design: Design
-    shift: NDArray[np.float64]  # m, identified minus printed, in the order of pack
-    ranges: NDArray[np.float64]  # deg: knee min, knee max, hip min, hip max
+    shift: FloatArray  # m, identified minus printed, in the order of variables.LENGTHS
+    ranges: FloatArray  # deg: knee min, knee max, hip min, hip max
     found: bool
 
     @property
     def cost(self) -> float:
         """Sum of squared shifts in units of the rounding half-width."""
-        return float(np.sum((self.shift / ROUNDING) ** 2))
+        return float(np.sum((self.shift / LENGTH_ROUNDING) ** 2))
 
 
 def identify(
-    printed: Design, target: Table1Row, seat_angle: float = SEAT_ANGLE, coupler_angle: float = COUPLER_ANGLE
+    printed: Design, target: Expected, seat_angle: float = SEAT_ANGLE, coupler_angle: float = COUPLER_ANGLE
 ) -> Identification:
     """Identify one six-bar for a seat angle and a coupler angle (rad)."""
-    base = replace(printed.linkage, seat_angle=seat_angle, coupler_angle=coupler_angle)
-    wanted = np.array([*target.knee_range, *target.hip_range])
+    wanted, candidate = (
+        np.array([*target.knee_range, *target.hip_range]),
+        _candidates(printed, seat_angle, coupler_angle),
+    )
 
-    def candidate(shift: NDArray[np.float64]) -> Design:
-        return replace(printed, linkage=unpack(base, pack(base) + ROUNDING * shift))
-
-    def margins(shift: NDArray[np.float64]) -> NDArray[np.float64]:
+    def margins(shift: FloatArray) -> FloatArray:
         design = candidate(shift)
         error = np.nan_to_num(joint_ranges(design) - wanted, nan=180.0)
-        return np.array([*(RANGE_TOLERANCE - error), *(RANGE_TOLERANCE + error), 100 * grashof_margin(design.linkage)])
+        return np.array([*(RANGE_TOLERANCE - error), *(RANGE_TOLERANCE + error), 100 * float(grashof_margin(design))])
 
     random, best, found = np.random.default_rng(_SEED), None, False
     for trial in range(_STARTS):
@@ -71,19 +71,21 @@ def identify(
             best, found = result, feasible
     assert best is not None
     design = candidate(best.x)
-    return Identification(design, ROUNDING * best.x, joint_ranges(design), found)
+    return Identification(design, LENGTH_ROUNDING * best.x, joint_ranges(design), found)
 
 
-def range_misfit(printed: Design, target: Table1Row, seat_angle: float, coupler_angle: float) -> float:
+def range_misfit(printed: Design, target: Expected, seat_angle: float, coupler_angle: float) -> float:
     """Largest error of a joint range, deg, at the least-squares fit of Table 1 inside the rounding box.
 
     NaN if no start inside the box turns; then nothing can be said.
     """
-    base = replace(printed.linkage, seat_angle=seat_angle, coupler_angle=coupler_angle)
-    wanted = np.array([*target.knee_range, *target.hip_range])
+    wanted, candidate = (
+        np.array([*target.knee_range, *target.hip_range]),
+        _candidates(printed, seat_angle, coupler_angle),
+    )
 
-    def error(shift: NDArray[np.float64]) -> NDArray[np.float64]:
-        return joint_ranges(replace(printed, linkage=unpack(base, pack(base) + ROUNDING * shift))) - wanted
+    def error(shift: FloatArray) -> FloatArray:
+        return joint_ranges(candidate(shift)) - wanted
 
     random = np.random.default_rng(_SEED)
     starts = [start for start in random.uniform(-0.9, 0.9, (60, 9)) if np.all(np.isfinite(error(start)))]
@@ -94,48 +96,12 @@ def range_misfit(printed: Design, target: Table1Row, seat_angle: float, coupler_
     return float(np.abs(min(fits, key=lambda fit: fit.cost).fun).max()) if fits else float("nan")
 
 
-def joint_ranges(design: Design, crank_angle: NDArray[np.float64] = kinematics.FULL_TURN) -> NDArray[np.float64]:
-    """Knee minimum and maximum, hip minimum and maximum, deg; NaN if it cannot close.
-
-    Shape (4,), or (designs, 4) for a batch.
-    """
-    points = kinematics.positions(design, crank_angle)
-    angles = kinematics.knee_angle(design, points), kinematics.hip_angle(design, points)
-    return np.degrees(np.stack([f(angle, axis=-1) for angle in angles for f in (np.min, np.max)], axis=-1))
+def _candidates(printed: Design, seat_angle: float, coupler_angle: float) -> Callable[[FloatArray], Design]:
+    """Shift in half-widths of the rounding, shape (9,) -> the design with these lengths and angles."""
+    base = replace(printed, linkage=replace(printed.linkage, seat_angle=seat_angle, coupler_angle=coupler_angle))
+    return lambda shift: with_lengths(base, lengths(base) + LENGTH_ROUNDING * shift)
 
 
-def grashof_margin(linkage: Linkage) -> Any:
-    """Grashof's inequality with the crank as shortest link: sum of the other two minus crank and longest link, m."""
-    others = np.sort(np.stack([np.abs(linkage.pivot_to_crank), linkage.coupler, linkage.rocker]), axis=0)
-    return others[0] + others[1] - others[2] - linkage.crank
-
-
-def rounded(linkage: Linkage, digits: int = 6) -> Linkage:
-    """The linkage with its lengths rounded, by default to 1 um."""
-    return unpack(linkage, np.round(pack(linkage), digits))
-
-
-def pack(linkage: Linkage) -> NDArray[np.float64]:
-    """The nine identified lengths, m, shape (9,): R1x, R1y, R2, R6, R7x, R7y, R8, R9, R10."""
-    ground, pivot, lengths = (
-        linkage.ground,
-        linkage.pivot_to_crank,
-        (linkage.pedal_arm, linkage.coupler, linkage.rocker),
-    )
-    return np.array([ground.real, ground.imag, linkage.crank, linkage.foot, pivot.real, pivot.imag, *lengths])
-
-
-def unpack(linkage: Linkage, lengths: NDArray[np.float64]) -> Linkage:
-    """The linkage with its lengths replaced; lengths of shape (9, designs, 1) make a batch."""
-    ground_x, ground_y, crank, foot, pivot_x, pivot_y, *rest = lengths.tolist() if lengths.ndim == 1 else lengths
-    pedal_arm, coupler, rocker = rest
-    return replace(
-        linkage,
-        ground=ground_x + 1j * ground_y,
-        crank=crank,
-        foot=foot,
-        pivot_to_crank=pivot_x + 1j * pivot_y,
-        pedal_arm=pedal_arm,
-        coupler=coupler,
-        rocker=rocker,
-    )
+def rounded(design: Design, digits: int = 6) -> Design:
+    """The design with its lengths rounded, by default to 1 um."""
+    return with_lengths(design, np.round(lengths(design), digits))

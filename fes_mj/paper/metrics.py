@@ -6,15 +6,17 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fes_mj.arrays import FloatArray
 from fes_mj.fourier import fourier
+from fes_mj.geometry import bounding_box, transmission_angles
+from fes_mj.joints import JOINTS
 from fes_mj.kinematics import Motion
+from fes_mj.moments import GROUPS
 from fes_mj.paper.reconstruction import Posterior
 from fes_mj.paper.runs import Runs
-from fes_mj.paper.table import Table
 from fes_mj.statics import QuasiStatic
-from fes_mj.torque import GROUPS, JOINTS, joint_angles, source_angle
+from fes_mj.table import Table
 
 WIDTHS = (2.0, 5.0, 10.0)  # deg over which a jump of the torque map is smoothed
 _DRAWS = 20_000  # of the criteria's weights
@@ -132,43 +134,33 @@ def ranking_table(runs: Runs, posteriors: dict[str, Posterior]) -> Table:
 
 def extent(motion: Motion) -> tuple[float, float]:
     """Length and height of the box around all joints over the turn, m."""
-    points = np.concatenate([np.atleast_1d(jet.value).ravel() for jet in motion.points.values()])
-    return float(np.ptp(points.real)), float(np.ptp(points.imag))
+    low, high = bounding_box({name: jet.value for name, jet in motion.points.items()})
+    return (high - low).real, (high - low).imag
 
 
-def transmission_angles(motion: Motion) -> dict[str, float]:
-    """Smallest transmission angle over the turn, deg, at the joint of each dyad."""
-    dyads = {"knee": ("thigh", "shank"), "rocker_joint": ("rocker", "coupler")}
-    angles = {}
-    for joint, (one, other) in dyads.items():
-        if joint in motion.points:
-            cosine = (motion.direction(one) * np.conj(motion.direction(other))).real
-            angles[joint] = float(np.degrees(np.acos(np.clip(np.abs(cosine), 0, 1)).min()))
-    return angles
-
-
-def inactive_share(power: NDArray[np.float64]) -> float:
+def inactive_share(power: FloatArray) -> float:
     """Share of the turn with negative power."""
     return float(np.mean(power < 0))
 
 
-def jump_weights(result: QuasiStatic) -> list[NDArray[np.float64]]:
+def jump_weights(result: QuasiStatic) -> list[FloatArray]:
     """Jumps of the torque map, extension less flexion, as functionals of the curves: knee bent, extended, then hip."""
-    weights = []
-    for joint, (angle, _) in joint_angles(result.motion).items():
+    weights, source = [], result.torque.source_angle
+    for joint, angle in result.joint_angle.items():
         for end in (angle.min(), angle.max()):
-            jump = fourier(source_angle(joint, end, 1.0)) - fourier(source_angle(joint, end, -1.0))
+            jump = fourier(source(joint, end, 1.0)) - fourier(source(joint, end, -1.0))
             weights.append(np.concatenate([jump * (joint == other) for other in JOINTS]))
     return weights
 
 
-def smoothing_weights(result: QuasiStatic, width: float) -> NDArray[np.float64]:
+def smoothing_weights(result: QuasiStatic, width: float) -> FloatArray:
     """Mean power lost by smoothing the jumps over `width` (rad) at each end, as a functional of the curves."""
     parts = []
-    for joint, (angle, rate) in joint_angles(result.motion).items():
+    for joint, angle in result.joint_angle.items():
+        rate = result.motion.joint_rate[joint]
         from_end = np.minimum(angle - angle.min(), angle.max() - angle)
         lost = (1 - np.clip(from_end / width, 0, 1)) / 2  # of the difference to the other branch
-        own, opposite = (fourier(source_angle(joint, angle, sign * rate)) for sign in (1, -1))
+        own, opposite = (fourier(result.torque.source_angle(joint, angle, sign * rate)) for sign in (1, -1))
         parts.append((rate * lost) @ (own - opposite) / rate.size)
     return result.cadence * np.concatenate(parts)
 

@@ -10,21 +10,13 @@ from typing import NamedTuple
 import numpy as np
 
 from fes_mj.design_file import load_design
+from fes_mj.arrays import FloatArray
 from fes_mj.errors import AssemblyError
-from fes_mj.kinematics import require_assembly
-from fes_mj.paper.identification import (
-    COUPLER_ANGLE,
-    SEAT_ANGLE,
-    grashof_margin,
-    identify,
-    joint_ranges,
-    pack,
-    range_misfit,
-)
+from fes_mj.geometry import grashof_margin, joint_ranges, require_assembly
+from fes_mj.paper.identification import COUPLER_ANGLE, SEAT_ANGLE, identify, range_misfit
 from fes_mj.paper.printed import SIX_BARS, table1
-from fes_mj.paper.table import Table
-
-LENGTHS = ("R1x", "R1y", "R2", "R6", "R7x", "R7y", "R8", "R9", "R10")
+from fes_mj.table import Table
+from fes_mj.variables import LENGTHS, lengths
 
 
 class Reading(NamedTuple):
@@ -77,7 +69,8 @@ def _outcomes(reading: Reading) -> Iterator[tuple[str, str]]:
     for name in reading.designs:
         printed, target = load_design(name, "printed"), table1()[name]
         if reading.mirrored:
-            printed = replace(printed, linkage=replace(printed.linkage, ground=np.conj(printed.linkage.ground)))
+            ground = printed.linkage.ground.conjugate()
+            printed = replace(printed, linkage=replace(printed.linkage, ground=ground))
         result = identify(printed, target, reading.seat_angle, reading.coupler_angle)
         if result.found:
             yield name, f"fits, cost {result.cost:.2f}"
@@ -89,7 +82,7 @@ def dimensions_table() -> Table:
     """Table 2: printed and identified lengths, cm, and the shift between them."""
     rows = []
     for name in SIX_BARS:
-        printed, identified = (100 * pack(load_design(name, dims).linkage) for dims in ("printed", "identified"))
+        printed, identified = (100 * lengths(load_design(name, dims)) for dims in ("printed", "identified"))
         rows += [
             (name.upper(), length, *values)
             for length, *values in zip(LENGTHS, printed, identified, identified - printed, strict=True)
@@ -113,7 +106,7 @@ def ranges_table() -> Table:
             except AssemblyError:
                 ranges, error = [], None
             verdict = "cannot turn" if error is None else "yes" if error <= 0.5 else "no"
-            margin = None if name == "trt" else 100 * grashof_margin(design.linkage)
+            margin = None if name == "trt" else 100 * float(grashof_margin(design))
             rows.append((name.upper(), dims, _span(wanted, 0), _span(ranges, 1), error, verdict, margin))
     columns = {
         "design": "",
@@ -128,7 +121,7 @@ def ranges_table() -> Table:
     return Table("Table 1: joint ranges", columns, rows, note)
 
 
-def _span(ranges: list[float] | np.ndarray, digits: int) -> str:
+def _span(ranges: list[float] | FloatArray, digits: int) -> str:
     if not len(ranges):
         return "-"
     knee_low, knee_high, hip_low, hip_high = (f"{value:.{digits}f}" for value in ranges)

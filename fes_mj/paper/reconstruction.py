@@ -11,14 +11,15 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import minimize
 from scipy.special import ive
 
+from fes_mj.arrays import FloatArray
 from fes_mj.errors import InputError
 from fes_mj.fourier import HARMONICS, TERMS, fourier
+from fes_mj.joints import JOINTS
+from fes_mj.moments import GROUPS, JointMoments
 from fes_mj.paper.evidence import Evidence, functional
-from fes_mj.torque import GROUPS, JOINTS, JointMoments
 from fes_mj.uncertainty import standard_deviation
 
 # A mean curve over a group of riders is smooth. The marginal likelihood hardly tells lengths apart between 0.25 and 1.2
@@ -38,7 +39,7 @@ class Hyperparameters:
     length: float
     amplitude: float
 
-    def prior_variance(self) -> NDArray[np.float64]:
+    def prior_variance(self) -> FloatArray:
         """Variance of each Fourier coefficient of knee, then hip, (N m)^2, shape (98,)."""
         order = np.arange(HARMONICS + 1)
         spectrum = self.amplitude**2 * ive(order, self.length**-2) * np.where(order == 0, 1, 2)
@@ -53,15 +54,15 @@ class Posterior:
     mean: N m, shape (98,). covariance: (N m)^2, shape (98, 98). log_likelihood: marginal, of the evidence.
     """
 
-    mean: NDArray[np.float64]
-    covariance: NDArray[np.float64]
+    mean: FloatArray
+    covariance: FloatArray
     log_likelihood: float
 
-    def predict(self, weights: NDArray[np.float64]) -> tuple[float, float]:
+    def predict(self, weights: FloatArray) -> tuple[float, float]:
         """Mean and standard deviation of a linear functional with the given weights, shape (98,)."""
         return float(weights @ self.mean), standard_deviation(weights, self.covariance)
 
-    def curve(self, joint: str, crank_angle: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def curve(self, joint: str, crank_angle: Any) -> tuple[FloatArray, FloatArray]:
         """Mean and standard deviation of a joint's moment, N m, at crank angles from top dead centre, rad."""
         features, start = fourier(crank_angle), JOINTS.index(joint) * TERMS
         part = slice(start, start + TERMS)
@@ -99,7 +100,7 @@ def reconstruct(evidence: list[Evidence]) -> Reconstruction:
     return Reconstruction(chosen, posteriors)
 
 
-def left_out_misses(rows: list[Evidence], hyperparameters: Hyperparameters) -> NDArray[np.float64]:
+def left_out_misses(rows: list[Evidence], hyperparameters: Hyperparameters) -> FloatArray:
     """Value less prediction from the other rows of the group, in standard deviations of both together, shape (rows,).
 
     Never smaller than the residual in units of the row's error, whose sign it has (Rasmussen and Williams, Gaussian
@@ -119,7 +120,7 @@ def choose_hyperparameters(rows: list[Evidence]) -> Hyperparameters:
     """Smooth maximum of the marginal likelihood of all groups together, one length and one amplitude."""
     systems = [_system([row for row in rows if row.group == group]) for group in GROUPS]
 
-    def cost(logs: NDArray[np.float64]) -> float:
+    def cost(logs: FloatArray) -> float:
         hyperparameters = Hyperparameters(*np.exp(logs))
         return -sum(_condition(*system, hyperparameters).log_likelihood for system in systems)
 
@@ -128,16 +129,16 @@ def choose_hyperparameters(rows: list[Evidence]) -> Hyperparameters:
     return Hyperparameters(*(float(value) for value in np.exp(best.x)))
 
 
-def _system(rows: list[Evidence]) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+def _system(rows: list[Evidence]) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Weights (rows, 98), values and errors (rows,) of the evidence."""
     weights, values, errors = zip(*(functional(row) for row in rows), strict=True)
     return np.array(weights), np.array(values), np.array(errors)
 
 
 def _condition(
-    weights: NDArray[np.float64],
-    values: NDArray[np.float64],
-    errors: NDArray[np.float64],
+    weights: FloatArray,
+    values: FloatArray,
+    errors: FloatArray,
     hyperparameters: Hyperparameters,
 ) -> Posterior:
     prior = hyperparameters.prior_variance()
@@ -148,8 +149,6 @@ def _condition(
     return Posterior(gain @ values, np.diag(prior) - gain @ spread, float(log_likelihood))
 
 
-def _evidence_covariance(
-    weights: NDArray[np.float64], errors: NDArray[np.float64], hyperparameters: Hyperparameters
-) -> NDArray[np.float64]:
+def _evidence_covariance(weights: FloatArray, errors: FloatArray, hyperparameters: Hyperparameters) -> FloatArray:
     """Of the evidence before it is seen: by the curves' prior and by its own errors, shape (rows, rows)."""
     return (weights * hyperparameters.prior_variance()) @ weights.T + np.diag(errors**2)

@@ -7,19 +7,23 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fes_mj.arrays import FloatArray
 from fes_mj.design import Design
 from fes_mj.design_file import load_design
 from fes_mj.fourier import fourier
+from fes_mj.geometry import joint_ranges
+from fes_mj.joints import JOINTS
 from fes_mj.kinematics import FULL_TURN, solve
+from fes_mj.moments import GROUPS
 from fes_mj.paper.evidence import Evidence, functional
-from fes_mj.paper.identification import ROUNDING, joint_ranges, pack, unpack
+from fes_mj.paper.identification import LENGTH_ROUNDING
 from fes_mj.paper.printed import SIX_BARS, table1
 from fes_mj.paper.reconstruction import Posterior, Reconstruction, condition
-from fes_mj.paper.table import Table
-from fes_mj.torque import GROUPS, joint_angles, source_angle
+from fes_mj.reference_tricycle import PAPER_TRICYCLE
+from fes_mj.table import Table
 from fes_mj.uncertainty import power_weights
+from fes_mj.variables import lengths, with_lengths
 
 _SAMPLES = 2000  # of the posterior, for shares that no formula gives
 _SEED = 2022
@@ -125,11 +129,11 @@ def predictive_table(recovered: Reconstruction) -> Table:
     """What the text says of the figures, and how probable the recovered curves find it."""
     rows: list[tuple[Any, ...]] = []
     for joint, direction, said in (("knee", 1.0, 20.0), ("knee", -1.0, -1.0)):
-        moment = fourier(source_angle(joint, np.radians(73.0), direction))
+        moment = fourier(PAPER_TRICYCLE.source_angle(joint, np.radians(73.0), direction))
         for group, posterior in recovered.posteriors.items():
             mean, deviation = posterior.predict(np.concatenate([moment, 0 * moment]))
             name = "extending" if direction > 0 else "flexing"
-            used = "told" if group == "p1p2" else "not told"
+            used = "used" if group == "p1p2" else "not used"
             rows.append(
                 (f"7.2: knee {name} at 73 deg, {group}", f"{said:.0f} N m", f"{mean:.1f} +- {deviation:.1f}", used)
             )
@@ -140,14 +144,14 @@ def predictive_table(recovered: Reconstruction) -> Table:
                 f"7.3: {name.upper()}'s power stays at or above 0 outside its peak, p1p2",
                 "0 % of the turn negative",
                 f"{100 * share:.0f} +- {100 * deviation:.0f} % below -{100 * VISIBLE:.0f} % of the peak",
-                f"not told; probability {probability:.2f}",
+                f"not used; probability {probability:.2f}",
             )
         )
         second = _second_peak(load_design(name), recovered.posteriors["p1p2"])
-        rows.append((f"7.3: {name.upper()}'s power has one high peak, p1p2", "one", second, "not told"))
+        rows.append((f"7.3: {name.upper()}'s power has one high peak, p1p2", "one", second, "not used"))
     share, deviation, _ = _negative_share(load_design("trt"), recovered.posteriors["p1p2"])
     cell = f"{100 * share:.0f} +- {100 * deviation:.0f} % below -{100 * VISIBLE:.0f} % of the peak"
-    rows.append(("7.3: the TRT's power turns negative in its second half, p1p2", "negative", cell, "not told"))
+    rows.append(("7.3: the TRT's power turns negative in its second half, p1p2", "negative", cell, "not used"))
     return Table(
         "What the text says of the figures", {"statement": "", "paper": "", "recovered": "", "evidence": ""}, rows
     )
@@ -170,13 +174,13 @@ def rounding_table(recovered: Reconstruction, batch: int = 10_000, wanted: int =
 
 def _inside_rounding(name: str, random: np.random.Generator, batch: int, wanted: int) -> Iterable[Design]:
     printed, target = load_design(name, "printed"), table1()[name]
-    accepted: list[NDArray[np.float64]] = []
+    accepted: list[FloatArray] = []
     while len(accepted) < wanted:
-        lengths = pack(printed.linkage)[:, None, None] + random.uniform(-ROUNDING, ROUNDING, (9, batch, 1))
-        designs = replace(printed, linkage=unpack(printed.linkage, lengths))
-        error = joint_ranges(designs, FULL_TURN[::8]) - (*target.knee_range, *target.hip_range)
-        accepted += list(lengths[:, np.all(np.abs(error) < 0.5, axis=1), 0].T)
-    samples = (replace(printed, linkage=unpack(printed.linkage, lengths)) for lengths in accepted[:wanted])
+        shift = random.uniform(-LENGTH_ROUNDING, LENGTH_ROUNDING, (9, batch, 1))
+        drawn = lengths(printed)[:, None, None] + shift
+        error = joint_ranges(with_lengths(printed, drawn), FULL_TURN[::8]) - (*target.knee_range, *target.hip_range)
+        accepted += list(drawn[:, np.all(np.abs(error) < 0.5, axis=1), 0].T)
+    samples = (with_lengths(printed, each) for each in accepted[:wanted])
     # the coarse turn may have stepped over an angle at which the linkage does not close
     return (sample for sample in samples if np.all(np.isfinite(joint_ranges(sample))))
 
@@ -185,8 +189,8 @@ def _group(evidence: list[Evidence], group: str, without: set[str] | None = None
     return [row for row in evidence if row.group == group and row.name not in (without or set())]
 
 
-def _weights(design: Design) -> NDArray[np.float64]:
-    return power_weights(solve(design), design.linkage.cadence)
+def _weights(design: Design) -> FloatArray:
+    return power_weights(solve(design), design.linkage.cadence, PAPER_TRICYCLE)
 
 
 def _gain(posterior: Posterior) -> str:
@@ -212,11 +216,13 @@ def _second_peak(design: Design, posterior: Posterior) -> str:
     return f"second one of {100 * ratio.mean():.0f} +- {100 * ratio.std():.0f} % of the first"
 
 
-def _drawn_crank_moments(design: Design, posterior: Posterior) -> NDArray[np.float64]:
+def _drawn_crank_moments(design: Design, posterior: Posterior) -> FloatArray:
     """Crank moment over a full turn under curves drawn from the posterior, N m, shape (angles, samples)."""
+    motion = solve(design)
+    angle, rate = motion.joint_angle, motion.joint_rate
     rows = [
-        rate[:, None] * fourier(source_angle(joint, angle, rate))
-        for joint, (angle, rate) in joint_angles(solve(design)).items()
+        rate[joint][:, None] * fourier(PAPER_TRICYCLE.source_angle(joint, angle[joint], rate[joint]))
+        for joint in JOINTS
     ]
     random = np.random.default_rng(_SEED)
     draws = random.multivariate_normal(posterior.mean, posterior.covariance, _SAMPLES, method="eigh")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from fes_mj.files import json_text, replacing, write_text
 from fes_mj.paper import gains, metrics, readings, recovery, tables
@@ -13,15 +13,16 @@ from fes_mj.paper.evidence import load_evidence
 from fes_mj.paper.printed import DATA
 from fes_mj.paper.reconstruction import Reconstruction, reconstruct
 from fes_mj.paper.runs import RUNS, Runs, run_all
-from fes_mj.paper.table import Table
 from fes_mj.provenance import provenance
+from fes_mj.style import STYLE
+from fes_mj.table import Table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 DPI = 150  # of the PNG; the SVG is for print
 
-Done = Callable[[], None]
+Done: TypeAlias = Callable[[], None]
 
 
 def steps() -> int:
@@ -31,10 +32,11 @@ def steps() -> int:
     return RUNS + len(readings.readings()) + len(FIGURES)
 
 
-def reproduce(folder: Path, done: Done) -> list[Path]:
+def reproduce(folder: Path, done: Done, svg: bool = False) -> list[Path]:
     """Write pages, figures and reproduction.json into an existing folder; `done` is called steps() times.
 
-    Every file appears whole or not at all. Returns the files written.
+    svg: figures as SVG beside the PNG. Every file appears whole or not at all; the same results are the same bytes.
+    Returns the files written.
     """
     from fes_mj.paper.figures import FIGURES
 
@@ -51,7 +53,7 @@ def reproduce(folder: Path, done: Done) -> list[Path]:
     written = [_write_page(folder / name, *page) for name, page in pages.items()]
     (folder / "figures").mkdir(exist_ok=True)
     for name, draw in FIGURES.items():
-        written += _write_figure(folder / "figures" / name, partial(draw, runs, recovered.posteriors))
+        written += _write_figure(folder / "figures" / name, partial(draw, runs, recovered.posteriors), svg)
         done()
     record = {"provenance": provenance(inputs(), ["matplotlib"]), "hyperparameters": recovered.hyperparameters.__dict__}
     record |= {
@@ -110,12 +112,10 @@ def _write_page(path: Path, title: str, contents: list[Table]) -> Path:
     return path
 
 
-def _write_figure(stem: Path, draw: Callable[[], Figure]) -> list[Path]:
+def _write_figure(stem: Path, draw: Callable[[], Figure], svg: bool) -> list[Path]:
     import matplotlib
 
-    from fes_mj.paper.figures import STYLE
-
-    paths = [stem.with_suffix(".png"), stem.with_suffix(".svg")]
+    paths = [stem.with_suffix(suffix) for suffix in (".png", *([".svg"] if svg else []))]
     with matplotlib.rc_context(STYLE):
         figure = draw()
         for path in paths:

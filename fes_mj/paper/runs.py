@@ -7,14 +7,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fes_mj.crosscheck import CrossCheck, cross_check
-from fes_mj.design_file import CATALOGUE, load_design
+from fes_mj.crosscheck import Case, cross_check
+from fes_mj.design_file import DESIGNS, load_design
 from fes_mj.errors import AssemblyError
+from fes_mj.moments import GROUPS, load_moments
 from fes_mj.statics import QuasiStatic, quasi_static
-from fes_mj.torque import GROUPS, load_moments
 from fes_mj.torque_velocity import load_torque_velocity
 
-RUNS = 2 * len(CATALOGUE) * len(GROUPS)  # simulations, with one leg and with two
+RUNS = 2 * len(DESIGNS) * len(GROUPS)  # simulations, with one leg and with two
 
 
 @dataclass(frozen=True)
@@ -26,14 +26,14 @@ class Runs:
     static: dict[tuple[str, str], QuasiStatic]
     printed: dict[tuple[str, str], QuasiStatic | None]
     hill: dict[tuple[str, str], QuasiStatic]
-    dynamic: dict[tuple[str, str, int], CrossCheck]
+    dynamic: dict[tuple[str, str, int], Case]
 
 
 def run_all(done: Callable[[], None]) -> Runs:
     """Solve and simulate everything; `done` is called after each of RUNS simulations."""
     runs = Runs({}, {}, {}, {})
     moments = {group: load_moments(group) for group in GROUPS}
-    for name in CATALOGUE:
+    for name in DESIGNS:
         for group in GROUPS:
             key, design = (name, group), load_design(name)
             runs.static[key] = quasi_static(design, moments[group])
@@ -50,5 +50,5 @@ def run_all(done: Callable[[], None]) -> Runs:
 
 def joint_speed(result: QuasiStatic, joint: str) -> tuple[float, float]:
     """Mean and peak absolute speed of a joint over the turn, rad/s."""
-    speed = result.cadence * np.abs(getattr(result.motion, f"{joint}_rate"))
+    speed = result.cadence * np.abs(result.motion.joint_rate[joint])
     return float(speed.mean()), float(speed.max())

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
+from fes_mj.moments import GROUPS
 from fes_mj.paper.printed import SIX_BARS, table1
 from fes_mj.paper.runs import Runs, joint_speed
-from fes_mj.paper.table import Table
-from fes_mj.torque import GROUPS
-from fes_mj.uncertainty import ratio_sd
+from fes_mj.statics import ratio_sd
+from fes_mj.table import Table
+from fes_mj.units import RPM
 
-ROUNDING = 0.005  # W, Table 1 is rounded to 0.01 W
+POWER_ROUNDING = 0.005  # W, Table 1 is rounded to 0.01 W
 
 
 def power_table(runs: Runs) -> Table:
@@ -33,7 +32,7 @@ def power_table(runs: Runs) -> Table:
                 deviation,
                 dynamic.power_mean,
                 difference,
-                verdict(difference, deviation),
+                explained_by(difference, deviation),
             )
         )
     columns = {
@@ -55,9 +54,9 @@ def power_table(runs: Runs) -> Table:
     return Table("Table 1: mean crank power", columns, rows, note)
 
 
-def verdict(difference: float, deviation: float) -> str:
+def explained_by(difference: float, deviation: float) -> str:
     """In which of rounding, one and two standard deviations a difference in W lies."""
-    limits = {"rounding": ROUNDING, "1 sd": deviation, "2 sd": 2 * deviation}
+    limits = {"rounding": POWER_ROUNDING, "1 sd": deviation, "2 sd": 2 * deviation}
     return next((name for name, limit in limits.items() if abs(difference) <= limit), "none: beyond 2 sd")
 
 
@@ -90,7 +89,7 @@ def motion_table(runs: Runs) -> Table:
     for name in table1():
         results = [runs.static[name, group] for group in GROUPS]
         knee, hip = (np.degrees(joint_speed(results[0], joint)) for joint in ("knee", "hip"))
-        rpm = results[0].cadence * 30 / math.pi
+        rpm = results[0].cadence / RPM
         rows.append((name.upper(), rpm, *(result.work_per_turn for result in results), *knee, *hip))
     columns = {
         "design": "",
@@ -107,16 +106,18 @@ def motion_table(runs: Runs) -> Table:
 def check_table(runs: Runs) -> Table:
     """The limits of the cross-check and how near each simulation came to them."""
     rows = []
-    for (name, group, legs), result in runs.dynamic.items():
-        run = result.simulation
-        worst = max(result.checks, key=lambda check: check.value / check.limit)
+    for (name, group, legs), case in runs.dynamic.items():
+        run = case.simulation
+        worst = max(case.checks, key=lambda check: check.value / check.limit)
         share = f"{worst.name.replace('_', ' ')}: {100 * worst.value / worst.limit:.0f} %"
-        cells = (100 * result.relative_difference, 1e6 * run.loop_gap_max, 1e6 * run.cadence_ripple, share)
-        rows.append((name.upper(), group, str(legs), *cells, "yes" if result.agrees else "NO"))
+        measured = (100 * case.relative_difference, 1e6 * run.loop_gap_max, 1e6 * run.cadence_ripple)
+        cells = (str(legs), 1e3 * run.timestep, *measured, share, "yes" if case.agrees else "NO")
+        rows.append((name.upper(), group, *cells))
     columns = {
         "design": "",
         "group": "",
         "legs": "",
+        "time step, ms": ".3f",
         "mean power, % off": "+.4f",
         "loop gap, um": ".2f",
         "cadence ripple, 1e-6": ".1f",

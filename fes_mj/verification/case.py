@@ -1,27 +1,88 @@
-"""What is verified: a design under the joint moments of a group at a cadence."""
+"""The measured case of the cross-check with what verification adds: audit, refinement, the paper's printed values."""
 
 from __future__ import annotations
 
-from typing import NamedTuple
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, NamedTuple
 
-from fes_mj.checks import Check, check
-from fes_mj.design import Design
-from fes_mj.paper.printed import Table1Row
-from fes_mj.torque import JointMoments
+from fes_mj.crosscheck import Case
+from fes_mj.units import RPM
+from fes_mj.verification.energy import Audit, audit
+from fes_mj.verification.references import Curves, differences, exact_curves
+from fes_mj.verification.refinement import Refinement, refine
 
 
-class Case(NamedTuple):
-    """A design, joint moments, the crank speed in rad/s, and the paper's row if this is one of its designs."""
+class Expected(NamedTuple):
+    """What print says of a design: crank power in W by rider group, joint ranges in deg."""
 
-    design: Design
-    moments: JointMoments
-    cadence: float
-    printed: Table1Row | None = None
+    power: dict[str, float]
+    knee_range: tuple[float, float]
+    hip_range: tuple[float, float]
+
+
+@dataclass(frozen=True, eq=False)
+class VerificationCase(Case):
+    """A case that is verified; expected: printed values, of the paper's designs only. refined: in a full run."""
+
+    expected: Expected | None = None
+    refined: bool = False
+
+    @cached_property
+    def two_legs(self) -> Case:
+        """The same with two legs half a turn apart on one crank."""
+        return Case(self.design, self.moments, self.cadence, self.timestep, legs=2, label=f"{self.name}, two legs")
+
+    @cached_property
+    def audit(self) -> Audit:
+        """Where the work of the joint moments went."""
+        return audit(self)
+
+    @cached_property
+    def refinement(self) -> Refinement:
+        """The run at other time steps and loop stiffnesses."""
+        return refine(self)
+
+    @cached_property
+    def curves(self) -> dict[str, Curves]:
+        """Crank moment by the exact methods beside what was measured, by family, N m."""
+        exact = exact_curves(self, self.audit.crank_angle)
+        massless = exact_curves(self, self.massless.crank_angle)["massless"]
+        measured = {"torque sensor": self.audit.crank_moment, "servo": self.audit.servo_moment}
+        return {
+            "massless": massless | {"simulation": self.massless.crank_moment},
+            "massive": exact["massive"] | measured,
+        }
 
     @property
-    def name(self) -> str:
-        return f"{self.design.name} {self.moments.name}"
+    def uncertainty(self) -> float:
+        """Numerical uncertainty of the mean power, W; NaN without refinement."""
+        return self.refinement.uncertainty * self.power_scale if self.refined else math.nan
 
-    def check(self, name: str, value: float) -> Check:
-        """A measured value of this case beside its limit."""
-        return check(name, value, self.name)
+    def row(self) -> dict[str, Any]:
+        """The case as the row of a table of runs."""
+        run, static = self.simulation, self.static
+        return {
+            "design": self.design.name,
+            "group": self.moments.name,
+            "cadence_rpm": self.cadence / RPM,
+            "timestep_s": run.timestep,
+            "power_mean_W": run.power_mean,
+            "numerical_uncertainty_W": self.uncertainty,
+            "static_power_mean_W": static.power_mean,
+            "relative_difference": self.relative_difference,
+            "work_per_turn_J": static.work_per_turn,
+            "loop_gap_max_m": run.loop_gap_max,
+        }
+
+    def as_json(self) -> dict[str, Any]:
+        """Everything but the curves."""
+        return self.row() | {
+            "crank_moment_differences_Nm": {
+                family: {f"{one} - {other}": value for (one, other), value in differences(curves).items()}
+                for family, curves in self.curves.items()
+            },
+            "energy_J": self.audit.terms,
+            "refinement": self.refinement.as_json() if self.refined else None,
+        }

@@ -5,13 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from fes_mj.mjcf import LEGS, build_mjcf, steps_per_turn
-from fes_mj.simulation import joint_drives
-from fes_mj.stepping import recording_loop, run_loop
-from fes_mj.torque import TorqueMap
-from fes_mj.verification.case import Case
+from fes_mj.arrays import FloatArray
+from fes_mj.crosscheck import Case
+from fes_mj.design import ONE_LEG
+from fes_mj.simulation.bench import joint_drives
+from fes_mj.simulation.mjcf import SERVO
+from fes_mj.simulation.sensors import Sensors
+from fes_mj.simulation.stepping import recording_loop, run_loop
+from fes_mj.time_step import steps_per_turn
 
 
 @dataclass(frozen=True)
@@ -19,7 +21,7 @@ class Audit:
     """Whole turns of one leg: joint_work = crank_work + kinetic + potential + damping - constraint_work + integration.
 
     Works in J. crank_moment is the torque sensor's, servo_moment what the servo applied, N m at crank_angle (rad),
-    shape (steps - 1,); advance: what the crank turned, rad.
+    shape (steps - 1,).
     """
 
     joint_work: float
@@ -28,11 +30,9 @@ class Audit:
     potential: float  # change
     damping: float  # taken by passive forces
     constraint_work: float  # done by the loops
-    crank_angle: NDArray[np.float64]
-    crank_moment: NDArray[np.float64]
-    servo_moment: NDArray[np.float64]
-    advance: float
-    turns: int
+    crank_angle: FloatArray
+    crank_moment: FloatArray
+    servo_moment: FloatArray
 
     @property
     def integration(self) -> float:
@@ -53,36 +53,31 @@ class Audit:
         }
 
 
-def audit(case: Case, turns: int = 1) -> Audit:
-    """Run the model of a case as `simulate` does, and record the forces of every kind."""
-    model, steps = build_mjcf(case.design, cadence=case.cadence).compile(), turns * steps_per_turn(case.cadence)
-    torque_map = TorqueMap(case.moments)
-    drives = joint_drives(LEGS[1])
-    feedback = {name: torque_map.feedback(joint) for name, joint in drives.items()}
+def audit(case: Case) -> Audit:
+    """Run one turn of a case as `simulate` does, and record the forces of every kind."""
+    model, steps = case.spec().compile(), steps_per_turn(case.design, case.cadence, case.timestep)
+    drives = joint_drives(ONE_LEG)
+    feedback = {name: case.torque.feedback(joint) for name, joint in drives.items()}
     forces = ("ctrl", "qfrc_constraint", "qfrc_passive", "actuator_force")
     run = run_loop(model, recording_loop(feedback, forces, every=1), steps)
-    column = {model.sensor(i).name: int(model.sensor(i).adr[0]) for i in range(model.nsensor)}
-    speeds = [column[f"{model.joint(i).name}_speed"] for i in range(model.njnt)]
-    speed = run.sensors[:, speeds]
-    travel = (speed[:steps] + speed[1 : steps + 1]) / 2 * model.opt.timestep  # of every joint in every step, rad
-    crank, servo = model.joint("crank").dofadr[0], model.actuator("crank_servo").id
-    sensor = run.sensors[:steps, column["crank_torque"] + 1]
-    motors = {model.joint(name).dofadr[0]: run.fields["ctrl"][:steps, model.actuator(name).id] for name in drives}
+    rows = Sensors(model, run.sensors)
+    speed = np.column_stack([rows[f"{joint}_speed"] for joint in rows.joints])
+    travel = (speed[:-1] + speed[1:]) / 2 * model.opt.timestep  # of every joint in every step, rad
+    crank, crank_moment = model.joint("crank").dofadr[0], rows.crank_moment()[:-1]
+    motors = {model.joint(name).dofadr[0]: run.fields["ctrl"][:, model.actuator(name).id] for name in drives}
 
-    def work(force: NDArray[np.float64]) -> float:
-        return float(np.sum(force[:steps] * travel))
+    def work(force: FloatArray) -> float:
+        return float(np.sum(force * travel))
 
     return Audit(
         joint_work=sum(float(moment @ travel[:, joint]) for joint, moment in motors.items()),
-        crank_work=float(sensor @ travel[:, crank]),
+        crank_work=float(crank_moment @ travel[:, crank]),
         kinetic=run.end_energy[1] - run.start_energy[1],
         potential=run.end_energy[0] - run.start_energy[0],
         damping=-work(run.fields["qfrc_passive"]),
         constraint_work=work(run.fields["qfrc_constraint"]),
-        crank_angle=run.sensors[: steps - 1, column["crank_angle"]],
-        crank_moment=sensor[: steps - 1],
+        crank_angle=rows["crank_angle"][: steps - 1],
+        crank_moment=crank_moment[: steps - 1],
         # the servo of the `discrete` integrator acts one step after the state that the sensors show
-        servo_moment=-run.fields["actuator_force"][1:, servo],
-        advance=float(run.sensors[steps, column["crank_angle"]] - run.sensors[0, column["crank_angle"]]),
-        turns=turns,
+        servo_moment=-run.fields["actuator_force"][1:, model.actuator(SERVO).id],
     )

@@ -1,15 +1,15 @@
-"""The verdicts as JUnit XML, which every continuous integration reads."""
+"""The detections as JUnit XML, which every continuous integration reads."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from xml.etree import ElementTree
 
-from fes_mj.checks import Check, criteria
-from fes_mj.verification.faults import Verdict
+from fes_mj.checks import Check, definitions
+from fes_mj.verification.faults import Detection
 
 
-def junit_xml(checks: Sequence[Check], verdicts: Sequence[Verdict] = ()) -> str:
+def junit_xml(checks: Sequence[Check], detections: Sequence[Detection] = ()) -> str:
     """One test suite a subject, one test case a check; injected faults that nobody caught are failures too."""
     root = ElementTree.Element("testsuites", name="fes_mj validate")
     for subject in dict.fromkeys(each.subject for each in checks):
@@ -20,16 +20,16 @@ def junit_xml(checks: Sequence[Check], verdicts: Sequence[Verdict] = ()) -> str:
             text = f"{each.value:g} {each.unit} (limit {each.limit:g} {each.unit})"
             if not each.ok:
                 failure = ElementTree.SubElement(case, "failure", message=text)
-                failure.text = f"{criteria()[each.name].guards} Usually broken by: {criteria()[each.name].breaks}"
+                failure.text = f"{definitions()[each.name].guards} Usually broken by: {definitions()[each.name].breaks}"
             ElementTree.SubElement(case, "system-out").text = text
-    if verdicts:
-        suite = _suite(root, "injected faults", len(verdicts), sum(not each.caught for each in verdicts))
-        for verdict in verdicts:
-            case = ElementTree.SubElement(suite, "testcase", classname="injected faults", name=verdict.fault.name)
-            if not verdict.first:
-                ElementTree.SubElement(case, "failure", message=f"nobody noticed: {verdict.fault.mistake}")
+    if detections:
+        suite = _suite(root, "injected faults", len(detections), sum(not each.caught for each in detections))
+        for detection in detections:
+            case = ElementTree.SubElement(suite, "testcase", classname="injected faults", name=detection.fault.name)
+            if not detection.first:
+                ElementTree.SubElement(case, "failure", message=f"nobody noticed: {detection.fault.mistake}")
             else:
-                ElementTree.SubElement(case, "system-out").text = f"caught by {verdict.first.name}"
+                ElementTree.SubElement(case, "system-out").text = f"caught by {detection.first.name}"
     ElementTree.indent(root)
     return ElementTree.tostring(root, encoding="unicode", xml_declaration=True) + "\n"
 

@@ -1,72 +1,160 @@
-"""How the mistakes of the catalogue are made: replacements of parts of the pipeline, and edits of a design."""
+"""How the faults of data/faults.toml are made. Each was made in print, in a tool, or nearly in this project."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
+from functools import cache, cached_property
+from pathlib import Path
+from typing import Any, TypeAlias
 
+import mujoco
 import numpy as np
 
-from fes_mj import mjcf, torque
-from fes_mj.design import Design, Linkage
-from fes_mj.kinematics import Jet, Motion
-from fes_mj.torque import REFERENCE, TABLE_SIZE, TOP_DEAD_CENTRE
-from fes_mj.verification.faults import Patch
+from fes_mj.arrays import FloatArray
+from fes_mj.crosscheck import Case
+from fes_mj.design import Design
+from fes_mj.files import read_toml
+from fes_mj.joints import PerJoint
+from fes_mj.kinematics import Jet, Motion, Rotation
+from fes_mj.reference_tricycle import PAPER_TRICYCLE
+from fes_mj.statics import equilibrium, joint_couples, moment_arm
+from fes_mj.torque_map import GRID, TorqueMap
+from fes_mj.variables import ALL
+from fes_mj.verification.faults import Fault
+
+Steps: TypeAlias = dict[str, Any]
+_FILE = Path(__file__).parents[1] / "data" / "faults.toml"
 
 
-def in_model(change: Callable[[Any], None]) -> tuple[Patch, ...]:
-    """Change the MjSpec once all is in it but the keyframe."""
-
-    def wrap(original: Callable[..., None]) -> Callable[..., None]:
-        def add_keyframe(spec: Any, state: Any) -> None:
-            change(spec)
-            original(spec, state)
-
-        return add_keyframe
-
-    return (Patch(mjcf, "_add_keyframe", wrap),)
+# Statics
 
 
-def in_keyframe(change: Callable[[dict[str, Any]], dict[str, Any]]) -> tuple[Patch, ...]:
-    return (Patch(mjcf, "_add_keyframe", lambda original: lambda spec, state: original(spec, state | change(state))),)
+def with_equilibrium(**options: Any) -> Steps:
+    return {"equilibrium": lambda _, motion, moments, loads=None: equilibrium(motion, moments, loads, **options)}
 
 
-def in_linkage(**changes: Callable[[Any], Any]) -> Callable[[Design], Design]:
-    """Change dimensions of the design file; each change maps the old number to the new one."""
-
-    def edit(design: Design) -> Design:
-        new = {name: change(getattr(design.linkage, name)) for name, change in changes.items()}
-        return replace(design, linkage=replace(design.linkage, **new))
-
-    return edit
+def shank_turned(moment: PerJoint[FloatArray]) -> dict[str, FloatArray]:
+    return joint_couples(moment) | {"shank": moment.knee}
 
 
-def set_loops(**attributes: Any) -> Callable[[Any], None]:
-    """Set attributes of every loop constraint."""
+def without_length(motion: Motion, body: str, point: str) -> Any:
+    arm = moment_arm(motion, body, point)
+    return arm.real / abs(arm) + 1j * arm.imag if (body, point) == ("thigh", "knee") else arm
 
+
+def by_crank_angle(case: Case, motion: Motion) -> PerJoint[FloatArray]:
+    return case.moments.at(motion.crank_angle - case.moments.measured_on.top_dead_centre)
+
+
+# Kinematics
+
+
+def in_motion(change: Callable[[Motion], Motion]) -> Steps:
+    return {"motion": lambda case, crank_angle: change(Case.motion(case, crank_angle))}
+
+
+def knee_below(motion: Motion) -> Motion:
+    knee, pedal = (motion.points[name].value for name in ("knee", "pedal"))
+    other = pedal * np.conj(knee / pedal)  # mirrored in the line from the hip, the origin
+    return replace(motion, points=motion.points | {"knee": motion.points["knee"]._replace(value=other)})
+
+
+class ShankAlone(Motion):
+    @property
+    def joint_rotation(self) -> PerJoint[Rotation]:
+        shank = self.rotation["shank"]
+        return PerJoint(Rotation(-shank.first, -shank.second), self.rotation["thigh"])
+
+
+def knee_from_shank_alone(motion: Motion) -> Motion:
+    return ShankAlone(motion.design, motion.crank_angle, motion.points, motion.rotation)
+
+
+def without_centripetal(motion: Motion) -> Motion:
+    knee, thigh = motion.points["knee"], motion.rotation["thigh"]
+    tangential = 1j * thigh.second * knee.value
+    return replace(motion, points=motion.points | {"knee": Jet(knee.value, knee.first, tangential)})
+
+
+# Torque map
+
+
+def in_map(kind: type[TorqueMap]) -> Steps:
+    return {"torque": cached_property(lambda case: kind(case.moments))}
+
+
+class DirectionsExchanged(TorqueMap):
+    def source_angle(self, joint: str, angle: Any, rate: Any) -> FloatArray:
+        return super().source_angle(joint, angle, np.where(np.asarray(rate) >= 0, -1.0, 1.0))
+
+    def feedback(self, joint: str) -> Callable[[float, float], float]:
+        moment = super().feedback(joint)
+        return lambda angle, rate: moment(angle, -1.0 if rate >= 0 else 1.0)
+
+
+class FromHorizontal(TorqueMap):
+    @cached_property
+    def table(self) -> PerJoint[FloatArray]:
+        return self.moments.at(GRID + self.reference.top_dead_centre)
+
+
+class BootForgotten(TorqueMap):
+    def source_angle(self, joint: str, angle: Any, rate: Any) -> FloatArray:
+        return super().source_angle(joint, angle - self.boot(joint), rate)
+
+    def feedback(self, joint: str) -> Callable[[float, float], float]:
+        moment, boot = super().feedback(joint), self.boot(joint)
+        return lambda angle, rate: moment(angle - boot, rate)
+
+    def boot(self, joint: str) -> float:
+        return float(self.reference.design.boot_angle) * (joint == "knee")
+
+
+class OpenTable(TorqueMap):
+    @cached_property
+    def table(self) -> PerJoint[FloatArray]:
+        known, pair = self.moments.crank_angle, PerJoint(self.moments.knee, self.moments.hip)
+        return pair.map(lambda moment: np.interp(GRID, known, moment))
+
+
+class LateFeedback(TorqueMap):
+    def feedback(self, joint: str) -> Callable[[float, float], float]:
+        moment, last = super().feedback(joint), [(2.0, 1.0)]
+
+        def late(angle: float, rate: float) -> float:
+            last.append((angle, rate))
+            return moment(*last.pop(0))
+
+        return late
+
+
+# MuJoCo model
+
+
+def in_model(change: Callable[[Any], None]) -> Steps:
+    return {"edit_model": lambda _, spec: change(spec)}
+
+
+def set_loops(**attributes: Any) -> Steps:
     def change(spec: Any) -> None:
         for equality in spec.equalities:
             for name, value in attributes.items():
                 setattr(equality, name, value)
 
-    return change
+    return in_model(change)
 
 
-def set_options(**attributes: Any) -> Callable[[Any], None]:
-    def change(spec: Any) -> None:
-        for name, value in attributes.items():
-            setattr(spec.option, name, value)
-
-    return change
+def set_option(name: str, value: Any) -> Steps:
+    return in_model(lambda spec: setattr(spec.option, name, value))
 
 
-def set_gear(actuator: str, factor: float) -> Callable[[Any], None]:
+def set_gear(actuator: str, factor: float) -> Steps:
     def change(spec: Any) -> None:
         spec.actuator(actuator).gear[0] *= factor
 
-    return change
+    return in_model(change)
 
 
 def weak_servo(spec: Any) -> None:
@@ -89,8 +177,8 @@ def pins_apart(spec: Any) -> None:
     spec.site("shank_pedal").pos[1] = 1e-3
 
 
-def long_rocker(spec: Any) -> None:
-    spec.body("coupler").pos[0] *= 1.01
+def long_thigh(spec: Any) -> None:
+    spec.body("shank").pos[0] *= 1.01
 
 
 def damped(spec: Any) -> None:
@@ -102,111 +190,97 @@ def six_digits(spec: Any) -> None:
     spec.compiler.savecompiled = spec.compiler.savecanonical = True
 
 
-def without_lever(original: Callable[..., Any]) -> Callable[..., Any]:
-    def moment_arm(motion: Motion, body: str, point: str) -> Any:
-        arm = original(motion, body, point)
-        if (body, point) == ("thigh", "knee"):
-            return arm.real / abs(arm) + 1j * arm.imag
-        return arm
+def in_keyframe(field: str, joint: str, change: Callable[[float], float]) -> Steps:
+    def edit(spec: Any) -> None:
+        place = [each.name for each in spec.joints].index(joint)  # hinges only: one coordinate each
+        values = getattr(spec.keys[0], field)
+        values[place] = change(values[place])
 
-    return moment_arm
-
-
-def by_crank_angle(_: Any) -> Callable[..., Any]:
-    def joint_moments(motion: Motion, moments: Any, cadence: Any = None) -> tuple[Any, Any]:
-        angle = np.asarray(motion.crank_angle) - TOP_DEAD_CENTRE
-        knee, hip = (np.interp(angle, moments.crank_angle, m, period=2 * np.pi) for m in (moments.knee, moments.hip))
-        return knee, hip
-
-    return joint_moments
+    return in_model(edit)
 
 
-def other_branch(original: Callable[..., Any]) -> Callable[..., Any]:
-    def close_dyad(start: Any, end: Any, first: Any, second: Any) -> Any:
-        span = end - start
-        return start + np.conj((original(start, end, first, second) - start) / span) * span
-
-    return close_dyad
+# Simulation
 
 
-def without_centripetal(_: Any) -> Callable[..., Any]:
-    def carried(origin: Jet, arm: Any, first: Any, second: Any) -> Jet:
-        return Jet(origin.value + arm, origin.first + 1j * first * arm, origin.second + 1j * second * arm)
-
-    return carried
+def late_torque(case: Case, **options: Any) -> Any:
+    run = Case.run(case, **options)
+    return replace(run, crank_moment=np.roll(run.crank_moment, 1))
 
 
-def in_map(change: Callable[..., Any], *joints: str) -> tuple[Patch, ...]:
-    """Change the inverse of the torque map, array and scalar version alike: change(source, angle, direction)."""
-
-    def wrap(original: dict[str, Any]) -> dict[str, Any]:
-        def changed(inverse: Any) -> Any:
-            def build(xp: Any, acos: Any) -> Any:
-                source = inverse(xp, acos)
-                return lambda angle, direction: change(source, angle, direction)
-
-            return build
-
-        return original | {joint: changed(original[joint]) for joint in joints}
-
-    return (Patch(torque, "_INVERSES", wrap),)
+def half_a_turn_more(case: Case, **options: Any) -> Any:
+    return replace(Case.run(case, turns=1.5, **options), turns=1)
 
 
-def from_horizontal(original: Callable[..., None]) -> Callable[..., None]:
-    def init(self: Any, moments: Any) -> None:
-        original(self, replace(moments, crank_angle=moments.crank_angle - TOP_DEAD_CENTRE))
-
-    return init
+def without_pre_roll(case: Case, **options: Any) -> Any:
+    return Case.run(case, pre_roll=1, **options)
 
 
-def open_table(original: Callable[..., None]) -> Callable[..., None]:
-    def init(self: Any, moments: Any) -> None:
-        original(self, moments)
-        grid = np.arange(TABLE_SIZE + 2) * (2 * np.pi / TABLE_SIZE)
-        self._tables = {joint: np.interp(grid, moments.crank_angle, getattr(moments, joint)) for joint in torque.JOINTS}
-
-    return init
+def without_couples(case: Case, *arguments: Any, **options: Any) -> Any:
+    loads = Case.loads(case, *arguments, **options)
+    return {body: load._replace(couple=0 * load.couple) for body, load in loads.items()}
 
 
-def delayed(original: Callable[..., Any]) -> Callable[..., Any]:
-    def feedback(self: Any, joint: str) -> Any:
-        moment, last = original(self, joint), [(2.0, 1.0)]
-
-        def late(angle: float, rate: float) -> float:
-            last.append((angle, rate))
-            return float(moment(*last.pop(0)))
-
-        return late
-
-    return feedback
+# Design file
 
 
-def late_torque(original: Callable[..., Any]) -> Callable[..., Any]:
-    def simulate(*arguments: Any, **options: Any) -> Any:
-        run = original(*arguments, **options)
-        return replace(run, crank_moment=np.roll(run.crank_moment, 1))
+def in_linkage(**changes: Callable[[float], float]) -> Callable[[Design], Design]:
+    def edit(design: Design) -> Design:
+        new: dict[str, Any] = {name: change(getattr(design.linkage, name)) for name, change in changes.items()}
+        return replace(design, linkage=replace(design.linkage, **new))
 
-    return simulate
-
-
-def without_couples(original: Callable[..., Any]) -> Callable[..., Any]:
-    def body_loads(*arguments: Any, **options: Any) -> Any:
-        loads = original(*arguments, **options)
-        return {body: load._replace(couple=0 * load.couple) for body, load in loads.items()}
-
-    return body_loads
+    return edit
 
 
-def half_more(original: Callable[..., int]) -> Callable[..., int]:
-    return lambda *arguments: 3 * original(*arguments) // 2
+_SEAT_OF_TRT = PAPER_TRICYCLE.design.linkage.seat_angle
+_IMPLICIT = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
+
+# Step of the pipeline -> what takes its place, by the name of the fault in data/faults.toml.
+STEPS: dict[str, Steps] = {
+    "knee_sign": with_equilibrium(couples=shank_turned),
+    "thigh_lever": with_equilibrium(arm=without_length),
+    "map_by_crank_angle": {"joint_moment": by_crank_angle},
+    "wrong_branch": in_motion(knee_below),
+    "wrong_rate": in_motion(knee_from_shank_alone),
+    "no_centripetal": in_motion(without_centripetal),
+    "directions_exchanged": in_map(DirectionsExchanged),
+    "crank_zero": in_map(FromHorizontal),
+    "boot_forgotten": in_map(BootForgotten),
+    "open_table": in_map(OpenTable),
+    "late_feedback": in_map(LateFeedback),
+    "length_in_model": in_model(long_thigh),
+    "default_solref": set_loops(solref=(0.02, 1.0)),
+    "soft_loops": set_loops(solref=(0.002, 1.0)),
+    "loop_inactive": set_loops(active=False),
+    "pins_apart": in_model(pins_apart),
+    "weak_servo": in_model(weak_servo),
+    "wrong_integrator": set_option("integrator", _IMPLICIT),
+    "gravity_axis": set_option("gravity", (-9.81, 0.0, 0.0)),
+    "tilted_hinge": in_model(tilted_hinge),
+    "heavy_thigh": in_model(heavy_thigh),
+    "damping": in_model(damped),
+    "degrees": set_gear("knee", math.degrees(1)),
+    "reversed_motor": set_gear("hip", -1),
+    "stale_keyframe": in_keyframe("qpos", "crank", lambda angle: angle + math.radians(5)),
+    "reversed_start": in_keyframe("qvel", "hip", lambda speed: -speed),
+    "six_digits": in_model(six_digits),
+    "late_torque": {"run": late_torque},
+    "turn_and_a_half": {"run": half_a_turn_more},
+    "no_pre_roll": {"run": without_pre_roll},
+    "no_rotary_inertia": {"loads": without_couples},
+}
+# Edits of the design file, which only printed values can tell from the right one.
+EDITS: dict[str, Callable[[Design], Design]] = {
+    "coupler_angle": in_linkage(coupler_angle=lambda angle: angle + math.radians(5)),
+    "length_in_file": in_linkage(crank=lambda crank: 1.01 * crank),
+    "seat_angle": in_linkage(seat_angle=lambda _: _SEAT_OF_TRT),
+}
 
 
-def in_cadence(change: Callable[[Linkage, float], float]) -> tuple[Patch, ...]:
-    def wrap(original: Any) -> Any:
-        return property(lambda linkage: change(linkage, original.fget(linkage)))
-
-    return (Patch(Linkage, "cadence", wrap),)
-
-
-SHANK_RATE = property(lambda motion: -motion.turning["shank"][0])
-BOOT = float(REFERENCE.boot_angle)
+@cache
+def faults() -> tuple[Fault, ...]:
+    """Every fault of data/faults.toml."""
+    rows = read_toml(_FILE, "faults").content
+    return tuple(
+        Fault(name, row["mistake"], row["guard"], STEPS.get(name, {}), EDITS.get(name), tuple(row.get("kinds", ALL)))
+        for name, row in rows.items()
+    )

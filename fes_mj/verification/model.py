@@ -9,10 +9,11 @@ import numpy as np
 
 from fes_mj import kinematics
 from fes_mj.checks import Check
-from fes_mj.export import mjcf_text
-from fes_mj.mjcf import CUTS, build_mjcf
-from fes_mj.torque import REFERENCE, TABLE_SIZE, TOP_DEAD_CENTRE, TorqueMap, joint_angles
-from fes_mj.verification.case import Case
+from fes_mj.crosscheck import Case
+from fes_mj.joints import JOINTS
+from fes_mj.simulation.export import mjcf_text
+from fes_mj.simulation.mjcf import CUTS
+from fes_mj.torque_map import GRID, TABLE_SIZE
 
 # What a reader of the model file must get back.
 FIELDS = (
@@ -24,12 +25,10 @@ FIELDS = (
 
 def map_checks(case: Case) -> list[Check]:
     """The torque map on the tricycle it was made from, and its two implementations against each other."""
-    torque_map = TorqueMap(case.moments)
-    motion = kinematics.solve(case.design, np.linspace(0, 2 * np.pi, 360, endpoint=False))
-    spread = 0.0
-    for joint, (angle, coefficient) in joint_angles(motion).items():
-        rate = case.cadence * coefficient
-        scalar, array = torque_map.feedback(joint), torque_map.moment(joint, angle, rate)
+    motion, spread = case.motion(np.linspace(0, 2 * np.pi, 360, endpoint=False)), 0.0
+    for joint in JOINTS:
+        angle, rate = motion.joint_angle[joint], case.cadence * motion.joint_rate[joint]
+        scalar, array = case.torque.feedback(joint), case.torque.moment(joint, angle, rate)
         values = [scalar(*pair) for pair in zip(angle.tolist(), rate.tolist(), strict=True)]
         spread = max(spread, float(np.abs(values - array).max()))
     return [case.check("torque_map", map_error(case)), case.check("map_feedback", spread)]
@@ -37,19 +36,15 @@ def map_checks(case: Case) -> list[Check]:
 
 def map_error(case: Case) -> float:
     """On its own tricycle the map must give the moments back, at every 0.1 deg of crank angle, N m."""
-    after = np.arange(TABLE_SIZE) * (2 * np.pi / TABLE_SIZE)  # from top dead centre
-    motion, torque_map = kinematics.solve(REFERENCE, TOP_DEAD_CENTRE + after), TorqueMap(case.moments)
-    error = 0.0
-    for joint, (angle, rate) in joint_angles(motion).items():
-        given = np.interp(after, case.moments.crank_angle, getattr(case.moments, joint), period=2 * np.pi)
-        moment = torque_map.moment(joint, angle, REFERENCE.linkage.cadence * rate)
-        error = max(error, float(np.abs(moment - given).max()))
-    return error
+    after, reference = GRID[:TABLE_SIZE], case.moments.measured_on  # from top dead centre
+    motion = kinematics.solve(reference.design, reference.top_dead_centre + after)
+    given, mapped = case.moments.at(after), case.torque.along(motion, reference.cadence)
+    return max(float(np.abs(mapped[joint] - given[joint]).max()) for joint in JOINTS)
 
 
 def model_checks(case: Case) -> list[Check]:
     """The compiled model at its keyframe, and the file written of it."""
-    model = build_mjcf(case.design, cadence=case.cadence).compile()
+    model = case.spec().compile()
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, 0)
     mujoco.mj_forward(model, data)
@@ -73,9 +68,7 @@ def tilt(data: mujoco.MjData) -> float:
 
 def file_difference(case: Case) -> float:
     """Largest difference of any number between the model and the one read back from its own file."""
-    spec = build_mjcf(case.design, cadence=case.cadence)
-    model = spec.compile()
-    again = mujoco.MjModel.from_xml_string(mjcf_text(case.design, cadence=case.cadence))
+    model, again = case.spec().compile(), mujoco.MjModel.from_xml_string(mjcf_text(case.spec()))
     pairs = [(getattr(model, field), getattr(again, field)) for field in FIELDS]
     pairs.append(
         (np.array([model.opt.timestep, *model.opt.gravity]), np.array([again.opt.timestep, *again.opt.gravity]))

@@ -2,52 +2,35 @@
 
 from __future__ import annotations
 
-import io
 from typing import Any
 
 import matplotlib as mpl
 import numpy as np
-from cycler import cycler
 from matplotlib.figure import Figure
 
-from fes_mj.crosscheck import reference_power
-from fes_mj.verification.details import Details
+from fes_mj.style import STYLE
+from fes_mj.verification.case import VerificationCase
 from fes_mj.verification.problems import Chain
 from fes_mj.verification.refinement import Level, Refinement
+from fes_mj.viewing.charts import plot_power, svg_text
 
 WIDTH, HEIGHT = 6.4, 3.6  # inches; text stays readable at the width of a phone
-STYLE: dict[Any, Any] = {
-    "svg.fonttype": "none",  # text stays text
-    "svg.hashsalt": "fes-mj",  # the same figure is the same file
-    "font.family": "sans-serif",
-    "font.size": 12,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.grid": True,
-    "grid.color": "#e3e6ea",
-    "legend.frameon": False,
-    "axes.prop_cycle": cycler(color=["#1b6ca8", "#d1495b", "#3a7d44", "#8a6d3b"]),
-}
+READABLE: dict[Any, Any] = STYLE | {"font.size": 12, "legend.fontsize": 11}
 
 
-def power_curve(each: Details) -> str:
+def power_curve(case: VerificationCase) -> str:
     """Simulated crank power over the turn beside its massive and its quasi-static reference."""
-    run = each.result.simulation
-    angle, step = np.degrees(run.crank_angle), slice(None, None, max(1, len(run.crank_angle) // 720))
-    with mpl.rc_context(STYLE):
-        figure, axes = _axes("crank angle, deg", "crank power of one leg, W")
-        axes.plot(angle[step], run.power[step], lw=4, alpha=0.35, label="simulated")
-        axes.plot(angle[step], reference_power(run)[step], lw=1.4, label="inverse dynamics")
-        axes.plot(angle[step], reference_power(run, 0.0)[step], lw=1.4, ls="--", label="quasi-static")
-        axes.set_xticks(range(0, 361, 60))
-        axes.set_title(each.case.name, loc="left", fontsize=12)
+    with mpl.rc_context(READABLE):
+        figure, axes = _axes("", "")
+        plot_power(axes, case)
+        axes.set_title(case.name, loc="left", fontsize=12)
         return _svg(figure, axes)
 
 
 def refinement_curve(name: str, refinement: Refinement) -> str:
     """Errors of one run over the time step."""
     steps = refinement.steps
-    with mpl.rc_context(STYLE):
+    with mpl.rc_context(READABLE):
         figure, axes = _axes("time step, ms", "relative error, or gap in m")
         _line(axes, steps, "gap", f"loop gap, order {refinement.gap_order:.2f}")
         _line(axes, steps, "lost", f"energy lost, order {refinement.energy_order:.2f}")
@@ -66,7 +49,7 @@ def _line(axes: Any, levels: tuple[Level, ...], field: str, label: str) -> None:
 
 def chain_curve(chains: list[Chain]) -> str:
     """Energy drift of the chain A02 over time, by settings."""
-    with mpl.rc_context(STYLE):
+    with mpl.rc_context(READABLE):
         figure, axes = _axes("time, s", "change of energy so far, J")
         for chain in chains:
             step = slice(1, None, max(1, len(chain.time) // 500))
@@ -79,17 +62,11 @@ def chain_curve(chains: list[Chain]) -> str:
 def _axes(x: str, y: str) -> tuple[Figure, Any]:
     figure = Figure(figsize=(WIDTH, HEIGHT), layout="constrained")
     axes = figure.subplots()
-    axes.set_xlabel(x)
-    axes.set_ylabel(y)
+    axes.set(xlabel=x, ylabel=y)
     return figure, axes
 
 
 def _svg(figure: Figure, axes: Any) -> str:
     handles, labels = axes.get_legend_handles_labels()
-    figure.legend(
-        handles, labels, loc="outside upper center", ncols=3 if sum(map(len, labels)) < 50 else 2, fontsize=11
-    )
-    stream = io.StringIO()
-    figure.savefig(stream, format="svg", transparent=True, metadata={"Date": None, "Creator": None})
-    text = stream.getvalue()
-    return text[text.index("<svg") :]
+    figure.legend(handles, labels, loc="outside upper center", ncols=3 if sum(map(len, labels)) < 50 else 2)
+    return svg_text(figure)

@@ -16,14 +16,16 @@ from typing import Any
 
 import mujoco
 import numpy as np
-from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
+from fes_mj.arrays import ComplexArray, FloatArray
 from fes_mj.checks import Check, check
 from fes_mj.design import Design, Linkage, Rider
-from fes_mj.mjcf import AXIS, LOOP_SOLIMP, add_body, build_mjcf, set_options
 from fes_mj.segments import GRAVITY, Inertia
-from fes_mj.stepping import recording_loop, run_loop
+from fes_mj.simulation.appearance import Spec
+from fes_mj.simulation.mjcf import AXIS, LOOP_SOLIMP, add_body, build_mjcf, set_options
+from fes_mj.simulation.sensors import Sensors
+from fes_mj.simulation.stepping import recording_loop, run_loop
 
 WINDOWS = 2  # of the chain, as in the library's table of results
 CHAIN_TIME = 10.0  # s
@@ -50,11 +52,11 @@ class Chain:
     """A run of A02; arrays have shape (steps,)."""
 
     settings: Settings
-    time: NDArray[np.float64]  # s
-    energy: NDArray[np.float64]  # J, relative to the start
-    gap: NDArray[np.float64]  # m, of the window that is open widest
-    top: NDArray[np.complex128]  # m, top of the first bar
-    exact: NDArray[np.complex128]  # m, where it ought to be
+    time: FloatArray  # s
+    energy: FloatArray  # J, relative to the start
+    gap: FloatArray  # m, of the window that is open widest
+    top: ComplexArray  # m, top of the first bar
+    exact: ComplexArray  # m, where it ought to be
 
     @property
     def energy_drift(self) -> float:
@@ -72,7 +74,7 @@ def compare_chains() -> list[Chain]:
     return [run_chain(settings) for settings in (RECOMMENDED, DEFAULTS)]
 
 
-def chain_spec(settings: Settings, windows: int = WINDOWS) -> mujoco.MjSpec:
+def chain_spec(settings: Settings, windows: int = WINDOWS) -> Spec:
     """The chain upright: bar i stands on the ground at x = i, coupler i leads from its top to the next bar's."""
     spec = mujoco.MjSpec()
     set_options(spec, settings.timestep, GRAVITY)
@@ -113,19 +115,18 @@ def run_chain(settings: Settings, windows: int = WINDOWS, duration: float = CHAI
     return Chain(settings, time, energy - energy[0], gap, top, exact_top(time, windows))
 
 
-def exact_top(time: NDArray[np.float64], windows: int = WINDOWS) -> NDArray[np.complex128]:
+def exact_top(time: FloatArray, windows: int = WINDOWS) -> ComplexArray:
     """Top of the first bar, m: the windows stay parallelograms, so the chain is a pendulum of one angle."""
     moment = (windows + 1) / 3 + windows  # bars turn about their feet, couplers travel; of mass times length squared
     lever = (windows + 1) / 2 + windows
     rate = GRAVITY / BAR_LENGTH * lever / moment
 
-    def pendulum(_: float, state: NDArray[np.float64]) -> list[float]:
+    def pendulum(_: float, state: FloatArray) -> list[float]:
         return [state[1], rate * math.sin(state[0])]
 
     start = [0.0, PUSH / BAR_LENGTH]
     angle = solve_ivp(pendulum, (0, time[-1]), start, "DOP853", time, rtol=1e-12, atol=1e-12).y[0]
-    top: NDArray[np.complex128] = BAR_LENGTH * 1j * np.exp(-1j * angle)
-    return top
+    return np.asarray(BAR_LENGTH * 1j * np.exp(-1j * angle))
 
 
 # Crank, coupler, rocker and ground link of Newton's test, m; bars of 4 cm square section, 1000 kg/m^3, without weight.
@@ -149,19 +150,16 @@ def run_four_bar() -> tuple[float, float]:
     model = spec.compile()
     run = run_loop(model, recording_loop({}), round(FOUR_BAR_TURNS / FOUR_BAR_TIMESTEP))
 
-    def column(sensor: str, size: int = 1) -> NDArray[np.float64]:
-        start = int(model.sensor(sensor).adr[0])
-        return run.sensors[:, start : start + size]
-
-    crank, rocker, knee = (column(f"{joint}_angle")[:, 0] for joint in ("crank", "hip", "knee"))
+    rows = Sensors(model, run.sensors)
+    crank, rocker, knee = (rows[f"{joint}_angle"] for joint in ("crank", "hip", "knee"))
     coupler = rocker - knee  # from the crank pin to the knee
     exact_coupler, exact_rocker = freudenstein(crank)
     errors = (_wrapped(rocker - exact_rocker), _wrapped(coupler - exact_coupler))
-    gap = np.linalg.norm(column("pedal_gap", 3), axis=1)
+    gap = np.linalg.norm(rows.vector("pedal_gap"), axis=1)
     return math.degrees(max(float(np.abs(error).max()) for error in errors)), float(gap.max())
 
 
-def freudenstein(crank_angle: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def freudenstein(crank_angle: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Angles of coupler (crank pin to rocker joint) and rocker, rad, by Freudenstein's equation, open branch."""
     k1, k2 = GROUND / CRANK, GROUND / ROCKER
     k3 = (CRANK**2 - COUPLER**2 + ROCKER**2 + GROUND**2) / (2 * CRANK * ROCKER)
@@ -173,8 +171,8 @@ def freudenstein(crank_angle: NDArray[np.float64]) -> tuple[NDArray[np.float64],
     return coupler, rocker
 
 
-def _wrapped(angle: NDArray[np.float64]) -> NDArray[np.float64]:
-    return np.angle(np.exp(1j * angle))
+def _wrapped(angle: FloatArray) -> FloatArray:
+    return np.asarray(np.angle(np.exp(1j * angle)))
 
 
 def chain_checks(subject: str) -> list[Check]:

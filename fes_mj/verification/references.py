@@ -6,80 +6,66 @@ Massive methods see masses and weight, massless ones do not; within each family 
 from __future__ import annotations
 
 from itertools import combinations
-from typing import Any
+from typing import TypeAlias
 
 import mujoco
 import numpy as np
-from numpy.typing import NDArray
 
-from fes_mj import kinematics
+from fes_mj.arrays import FloatArray
 from fes_mj.checks import Check
-from fes_mj.crosscheck import CrossCheck
-from fes_mj.inverse_dynamics import body_loads, crank_moment
+from fes_mj.crosscheck import Case
+from fes_mj.joints import PerJoint
 from fes_mj.kinematics import Motion
-from fes_mj.mjcf import build_mjcf, joint_motion
-from fes_mj.statics import equilibrium, joint_moments, virtual_work
-from fes_mj.verification.case import Case
-from fes_mj.verification.energy import Audit
+from fes_mj.simulation.mjcf import joint_motion
+from fes_mj.statics import virtual_work
 
-Curves = dict[str, NDArray[np.float64]]  # method -> crank moment, N m, shape (angles,)
+Curves: TypeAlias = dict[str, FloatArray]  # method -> crank moment, N m, shape (angles,)
 POINTS = 360
 
 
-def exact_curves(case: Case, crank_angle: Any = None) -> dict[str, Curves]:
+def exact_curves(case: Case, crank_angle: FloatArray | None = None) -> dict[str, Curves]:
     """Crank moment by every method that needs no simulation; families "massive" and "massless".
 
     crank_angle: rad, shape (angles,), by default every degree.
     """
     angle = np.linspace(0, 2 * np.pi, POINTS, endpoint=False) if crank_angle is None else crank_angle
-    motion = kinematics.solve(case.design, angle)
-    knee, hip = joint_moments(motion, case.moments, case.cadence)
-    loads = body_loads(motion, case.cadence)
+    motion = case.motion(angle)
+    joint_moment, loads = case.joint_moment(motion), case.loads(motion)
     return {
         "massless": {
-            "equilibrium": equilibrium(motion, knee, hip)[0],
-            "virtual work": virtual_work(motion, knee, hip),
-            "inverse dynamics": crank_moment(case.design, case.moments, case.cadence, angle, mass_scale=0.0),
+            "equilibrium": case.equilibrium(motion, joint_moment)[0],
+            "virtual work": virtual_work(motion, joint_moment),
+            "inverse dynamics": case.crank_moment(motion, mass_scale=0.0),
         },
         "massive": {
-            "equilibrium": equilibrium(motion, knee, hip, loads)[0],
-            "inverse dynamics": crank_moment(case.design, case.moments, case.cadence, angle),
-            "mj_inverse": mujoco_inverse(case, motion, knee, hip),
+            "equilibrium": case.equilibrium(motion, joint_moment, loads)[0],
+            "inverse dynamics": case.crank_moment(motion),
+            "mj_inverse": mujoco_inverse(case, motion, joint_moment),
         },
     }
 
 
-def mujoco_inverse(case: Case, motion: Motion, knee: Any, hip: Any) -> NDArray[np.float64]:
+def mujoco_inverse(case: Case, motion: Motion, joint_moment: PerJoint[FloatArray]) -> FloatArray:
     """Crank moment from MuJoCo's inverse dynamics of the open tree, N m, shape (angles,).
 
     The loops are switched off and the exact constant-speed motion is put in; the forces it needs, less the joint
     motors, are projected on the closed linkage's one degree of freedom. Constraint softness has no part in it.
     """
-    model = build_mjcf(case.design, cadence=case.cadence).compile()
+    model = case.spec().compile()
     model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_EQUALITY | mujoco.mjtDisableBit.mjDSBL_ACTUATION)
     ones = np.ones(np.size(motion.crank_angle))
     joints = joint_motion(motion) | {"crank": (motion.crank_angle * ones, ones, 0 * ones)}
     names = [model.joint(i).name for i in range(model.njnt)]  # hinges only: one coordinate each
     position, rate, second = (np.column_stack([joints[name][part] * ones for name in names]) for part in range(3))
     motors = np.zeros_like(position)
-    motors[:, names.index("knee")], motors[:, names.index("hip")] = knee, hip
+    for joint, moment in joint_moment.items():
+        motors[:, names.index(joint)] = moment
     data, needed = mujoco.MjData(model), np.empty_like(position)
     for row in range(len(ones)):
         data.qpos, data.qvel, data.qacc = position[row], case.cadence * rate[row], case.cadence**2 * second[row]
         mujoco.mj_inverse(model, data)
         needed[row] = data.qfrc_inverse
-    moment: NDArray[np.float64] = np.sum(rate * (motors - needed), axis=1)
-    return moment
-
-
-def measured_curves(case: Case, audit: Audit, result: CrossCheck) -> dict[str, Curves]:
-    """The exact curves at the simulated crank angles beside what was measured there."""
-    curves = exact_curves(case, audit.crank_angle)
-    massless = exact_curves(case, result.massless.crank_angle)["massless"]
-    return {
-        "massless": massless | {"simulation": result.massless.crank_moment},
-        "massive": curves["massive"] | {"torque sensor": audit.crank_moment, "servo": audit.servo_moment},
-    }
+    return np.asarray(np.sum(rate * (motors - needed), axis=1))
 
 
 def differences(curves: Curves) -> dict[tuple[str, str], float]:

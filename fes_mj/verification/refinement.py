@@ -11,13 +11,11 @@ from typing import Any
 
 import numpy as np
 
-from fes_mj import kinematics
-from fes_mj.checks import Check
-from fes_mj.crosscheck import power_scale
-from fes_mj.mjcf import LOOP_SOLREF, steps_per_turn
-from fes_mj.simulation import Simulation, simulate
-from fes_mj.statics import joint_moments, quasi_static, virtual_work
-from fes_mj.verification.case import Case
+from fes_mj.crosscheck import Case
+from fes_mj.simulation.bench import Simulation
+from fes_mj.simulation.mjcf import LOOP_SOLREF
+from fes_mj.statics import virtual_work
+from fes_mj.time_step import steps_per_turn
 
 STEP_FACTORS = (1, 2, 4)  # steps a turn, times the recommended number
 LOOP_TIMES = (8e-3, 4e-3, 2e-3)  # s, soft enough for the softness to dominate the loop gap
@@ -30,7 +28,7 @@ SAFETY = 1.25  # Roache's factor for three grids
 class Level:
     """One run: time step and loop time constant (s), loop gap (m), energy lost and error of the work a turn, relative.
 
-    Relative is to the work of a turn, as crosscheck.power_scale has it. The work is the crank's over one exact turn,
+    Relative is to the work of a turn, as Case.power_scale has it. The work is the crank's over one exact turn,
     what is stored at its ends given back.
     """
 
@@ -102,52 +100,34 @@ def observed_order(sizes: list[float], errors: list[float]) -> float:
 
 
 def refine(case: Case) -> Refinement:
-    """Run a case at every level."""
-    count = steps_per_turn(case.cadence)
-    exact = quasi_static(case.design, case.moments, case.cadence, EXACT_POINTS)
-    scale = power_scale(exact) * 2 * math.pi / case.cadence  # J
+    """Run a case at every level; the first is the case's own run."""
+    count = steps_per_turn(case.design, case.cadence, case.timestep)
+    exact = case.static_at(EXACT_POINTS).work_per_turn
+    scale = case.power_scale * 2 * math.pi / case.cadence  # J
 
-    def level(factor: int, loop_time: float) -> Level:
-        run = simulate(
-            case.design,
-            case.moments,
-            cadence=case.cadence,
-            timestep=2 * math.pi / case.cadence / (factor * count),
-            loop_solref=(loop_time, LOOP_SOLREF[1]),
-        )
-        lost, error = run.energy.lost / scale, (_work(run) - exact.work_per_turn) / scale
+    def level(run: Simulation, loop_time: float) -> Level:
+        lost, error = run.energy.lost / scale, (_work(case, run) - exact) / scale
         return Level(run.timestep, loop_time, run.loop_gap_max, lost, error)
 
+    def again(factor: int, loop_time: float) -> Level:
+        timestep, solref = 2 * math.pi / case.cadence / (factor * count), (loop_time, LOOP_SOLREF[1])
+        return level(case.run(timestep=timestep, loop_solref=solref), loop_time)
+
     stiff = LOOP_SOLREF[0]
-    steps = tuple(level(factor, stiff) for factor in STEP_FACTORS)
-    softness = tuple(level(SOFTNESS_STEP_FACTOR, loop_time) for loop_time in LOOP_TIMES)
-    return Refinement(
-        steps, softness, steps[STEP_FACTORS.index(SOFTNESS_STEP_FACTOR)], level(SOFTNESS_STEP_FACTOR, stiff / 10)
-    )
+    steps = (level(case.simulation, stiff), *(again(factor, stiff) for factor in STEP_FACTORS[1:]))
+    softness = tuple(again(SOFTNESS_STEP_FACTOR, loop_time) for loop_time in LOOP_TIMES)
+    recommended = steps[STEP_FACTORS.index(SOFTNESS_STEP_FACTOR)]
+    return Refinement(steps, softness, recommended, again(SOFTNESS_STEP_FACTOR, stiff / 10))
 
 
-def _work(run: Simulation) -> float:
+def _work(case: Case, run: Simulation) -> float:
     """Crank work of one exact turn, J.
 
     The servo yields a little, so the run covers a few millionths of a rad more than a turn: the work of that angle is
     taken off, and the energy that masses and weight hold at its end and not at its beginning is added.
     """
     overrun = float(run.crank_speed.sum() * run.timestep) - 2 * math.pi * run.turns
-    motion = kinematics.solve(run.design, run.crank_angle[:1])
-    beyond = float(virtual_work(motion, *joint_moments(motion, run.moments, run.cadence))[0]) * overrun
+    motion = case.motion(run.crank_angle[:1])
+    beyond = float(virtual_work(motion, case.joint_moment(motion))[0]) * overrun
     energy = run.energy
     return (energy.crank_work + energy.kinetic + energy.potential - beyond) / run.turns
-
-
-def refinement_checks(case: Case) -> list[Check]:
-    """Orders, floor, uncertainty and what is left at a step of zero."""
-    result = refine(case)
-    return [
-        case.check("gap_order", abs(result.gap_order - 2)),
-        case.check("energy_order", 1 - result.energy_order),
-        case.check("softness_order", 1 - result.softness_order),
-        case.check("softness_floor", result.softness_floor),
-        case.check("finest_work", abs(result.steps[-1].work_error)),
-        case.check("extrapolated_work", abs(result.extrapolated)),
-        case.check("power_uncertainty", result.uncertainty),
-    ]

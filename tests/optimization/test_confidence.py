@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 import fes_mj
+from fes_mj.cycles import cycles
 from fes_mj.errors import InputError
 from fes_mj.optimization.confidence import gain, uncertain_table
-from fes_mj.optimization.cycles import cycles
 from fes_mj.optimization.optimize import optimize
 from fes_mj.optimization.problem import Problem
-from fes_mj.uncertainty import difference_sd
+from fes_mj.statics import difference_sd
 from tests.optimization.test_problem import problem_of
 
 GROUPS = ("p1p2", "p1p3")
@@ -55,7 +55,7 @@ def test_caution_trades_gain_for_certainty() -> None:
     for caution in (0.0, 2.0):
         own = fes_mj.load_design("d2")
         baseline = cycles(own, table).work[0] * own.linkage.cadence / (2 * np.pi)
-        problem = Problem(own, table, base.limits, base.knee_speed, base.hip_speed, caution, baseline)
+        problem = Problem(own, table, base.limits, base.joint_speed, caution, baseline)
         x = optimize(problem, "cma-es", budget=6000, seed=4)[0].x
         found.append(gain(problem.evaluate(x[None]).power[0], baseline))
     assert found[1].deviation < found[0].deviation

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 import fes_mj
-from fes_mj import kinematics
-from fes_mj.optimization.cycles import WorkTable, joint_speeds
-from fes_mj.optimization.problem import LENGTHS, Problem
+from fes_mj.cycles import WorkTable, joint_speeds
+from fes_mj.geometry import require_assembly
+from fes_mj.optimization.problem import LENGTH_COUNT, Problem
 from fes_mj.optimization.problem_file import DEFAULT, depth_inside, load_limits
 
 TABLE = WorkTable.of(fes_mj.load_moments("p1p2"))
@@ -21,12 +21,12 @@ def problem_of(name: str, grashof_min: float = 0.0) -> Problem:
     design = fes_mj.load_design(name)
     speeds = joint_speeds(design, TABLE)
     limits = replace(load_limits(), grashof_min=grashof_min)
-    return Problem(design, TABLE, limits, speeds["knee"] * (1 + 1e-9), speeds["hip"] * (1 + 1e-9))
+    return Problem(design, TABLE, limits, speeds.map(lambda speed: speed * (1 + 1e-9)))
 
 
 def population(problem: Problem, count: int = 2000, seed: int = 0, step: float = 0.02) -> np.ndarray:
     random = np.random.default_rng(seed)
-    return problem.variables(problem.template) + random.uniform(-step, step, (count, LENGTHS + 1))
+    return problem.variables(problem.template) + random.uniform(-step, step, (count, LENGTH_COUNT + 1))
 
 
 @pytest.mark.parametrize("name", SIX_BARS)
@@ -41,7 +41,7 @@ def test_printed_designs_are_feasible_at_their_own_joint_speeds(name: str) -> No
 
 def test_coupler_driven_designs_break_the_speed_limit_of_the_trt() -> None:
     speeds = joint_speeds(fes_mj.load_design("trt"), TABLE)
-    problem = replace(problem_of("d1"), knee_speed=speeds["knee"], hip_speed=speeds["hip"])
+    problem = replace(problem_of("d1"), joint_speed=speeds)
     violations = problem.violations(problem.evaluate(problem.variables(problem.template)[None]))
     assert [violation["name"] for violation in violations] == ["knee_speed"]
     assert violations[0]["value"] == pytest.approx(164.6, abs=0.1)
@@ -61,12 +61,12 @@ def test_verdicts_agree_with_one_design_at_a_time(name: str) -> None:
         design = problem.design(evaluation.x[row], "one")
         static = fes_mj.quasi_static(design, moments)
         assert evaluation.power[row, 0] == pytest.approx(static.power_mean, rel=1e-4)
-        assert np.degrees(static.knee_angle.min()) > 68.49
-        assert np.degrees(static.knee_angle.max()) < 122.51
-        assert np.degrees(static.hip_angle.min()) > 84.49
-        assert np.degrees(static.hip_angle.max()) < 120.51
-        knee_speed = np.degrees(np.abs(static.motion.knee_rate).mean()) * static.cadence
-        assert knee_speed <= problem.knee_speed * (1 + 1e-3)
+        assert np.degrees(static.joint_angle.knee.min()) > 68.49
+        assert np.degrees(static.joint_angle.knee.max()) < 122.51
+        assert np.degrees(static.joint_angle.hip.min()) > 84.49
+        assert np.degrees(static.joint_angle.hip.max()) < 120.51
+        knee_speed = np.degrees(np.abs(static.motion.joint_rate.knee).mean()) * static.cadence
+        assert knee_speed <= problem.joint_speed.knee * (1 + 1e-3)
         lengths = [abs(design.linkage.pivot_to_crank), design.linkage.coupler, design.linkage.rocker]
         assert design.linkage.crank < min(lengths)
     broken = [problem.violations(evaluation, row) for row in np.flatnonzero(~evaluation.feasible)]
@@ -75,7 +75,7 @@ def test_verdicts_agree_with_one_design_at_a_time(name: str) -> None:
     unable = [c.name for c in problem.constraints].index("grashof")
     for row in np.flatnonzero(evaluation.margins[:, unable] < 0)[:5]:
         with pytest.raises(fes_mj.AssemblyError):
-            kinematics.require_assembly(problem.design(evaluation.x[row], "one"))
+            require_assembly(problem.design(evaluation.x[row], "one"))
 
 
 def test_a_population_is_its_members() -> None:
@@ -90,12 +90,12 @@ def test_a_population_is_its_members() -> None:
 
 def test_the_chosen_gear_ratio_is_the_largest_allowed() -> None:
     problem = problem_of("d1")
-    nine = problem.evaluate(population(problem, 500)[:, :LENGTHS])
+    nine = problem.evaluate(population(problem, 500)[:, :LENGTH_COUNT])
     rows = nine.feasible
     assert rows.any()
     for factor, feasible in ((0.999, True), (1.001, False)):
         x = nine.x[rows].copy()
-        x[:, LENGTHS] *= factor
+        x[:, LENGTH_COUNT] *= factor
         assert np.all(problem.evaluate(x).feasible == feasible)
 
 

@@ -1,0 +1,55 @@
+"""Parsing a command line, running the command, and the exit code that says how it went."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Sequence
+
+from cyclopts import App, CycloptsError
+
+from fes_mj.cli import COMMANDS, INTERRUPTED, INTERRUPTION, PURPOSE
+from fes_mj.console import errors
+from fes_mj.errors import InputError, MissingPartError, UnstableError
+
+AGREES, DISAGREES, BAD_INPUT, MISSING_PART = 0, 1, 2, 3
+LONGEST_MESSAGE = 1000  # characters
+
+app = App(name="fes_mj", help=PURPOSE, suppress_keyboard_interrupt=False)
+for _command, _help in COMMANDS.items():
+    app.command(f"fes_mj.cli.{_command}:{_command}", name=_command, help=_help)
+
+
+def run(arguments: Sequence[str] | None = None) -> int:
+    """Run one command line and return its exit code; every expected failure becomes one message on standard error."""
+    try:
+        code = app(arguments, exit_on_error=False, print_error=False, result_action="return_value")
+        return code if isinstance(code, int) else AGREES
+    except (CycloptsError, InputError) as error:
+        return _fail(error, BAD_INPUT)
+    except MissingPartError as error:
+        return _fail(error, MISSING_PART)
+    except UnstableError as error:
+        return _fail(error, DISAGREES)
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # the reader left; nothing more to say
+        return DISAGREES
+    except OSError as error:
+        return _fail(f"{error.filename or 'output'}: {error.strerror}", BAD_INPUT)
+    except KeyboardInterrupt:
+        return _fail(INTERRUPTION, INTERRUPTED)
+    except ImportError as error:
+        cause: BaseException | None = error
+        while cause and not isinstance(cause, KeyboardInterrupt):
+            cause = cause.__cause__
+        if cause is None:
+            raise
+        return _fail(INTERRUPTION, INTERRUPTED)  # it came while a compiled module was being loaded
+
+
+def _fail(message: object, code: int) -> int:
+    text = str(message)
+    if len(text) > LONGEST_MESSAGE:  # quoted input can be as long as the file
+        text = f"{text[: LONGEST_MESSAGE // 2]} ... {text[-LONGEST_MESSAGE // 2 :]}"
+    errors.print(f"fes_mj: {text}", markup=False, highlight=False, soft_wrap=True)
+    return code

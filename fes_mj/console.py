@@ -1,0 +1,67 @@
+"""What people see on a terminal: aligned tables, and progress on standard error."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import TypeVar
+
+from rich.console import Console
+
+Item = TypeVar("Item")
+
+output = Console(highlight=False)
+errors = Console(stderr=True, highlight=False)
+
+
+def say(text: str, style: str | None = None) -> None:
+    """Print a line as it is, however long, without reading markup in it."""
+    output.print(text, style=style, markup=False, soft_wrap=True)
+
+
+def print_table(title: str, columns: Sequence[str], rows: Iterable[Sequence[str]]) -> None:
+    """Print a title and a table, first column left, the others right aligned; cells may hold rich's markup."""
+    from rich.box import SIMPLE_HEAD
+    from rich.table import Table
+
+    say(title, "bold")
+    table = Table(box=SIMPLE_HEAD)
+    for number, column in enumerate(columns):
+        table.add_column(column, justify="right" if number else "left")
+    for row in rows:
+        table.add_row(*row)
+    output.print(table)
+
+
+@contextmanager
+def progress_bar(what: str, total: int, silent: bool = False, done: int = 0) -> Iterator[Callable[[int], None]]:
+    """A bar on standard error with rate and time left; call what it gives with the number of steps just made."""
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, ProgressColumn, Task, TimeRemainingColumn
+    from rich.text import Text
+
+    class Rate(ProgressColumn):
+        def render(self, task: Task) -> Text:
+            return Text(f"{task.speed:,.3g}/s" if task.speed else "")
+
+    columns = ("{task.description}", BarColumn(), MofNCompleteColumn(), Rate(), TimeRemainingColumn())
+    with Progress(*columns, console=errors, transient=True, disable=silent) as bars:
+        task = bars.add_task(what, total=total, completed=done)
+        yield lambda steps: bars.update(task, advance=steps)
+
+
+def track(items: Sequence[Item], what: str, silent: bool = False) -> Iterator[Item]:
+    """The items one by one, with a progress bar that is gone when they are through."""
+    with progress_bar(what, len(items), silent) as advance:
+        for item in items:
+            yield item
+            advance(1)
+
+
+def number(value: float, unit: str = "") -> str:
+    """A value with two digits and its unit."""
+    return f"{value:.2g} {unit}".rstrip()
+
+
+def verdict(ok: bool) -> str:
+    """Whether a check holds, in colour."""
+    return "[green]ok[/]" if ok else "[bold red]FAILED[/]"

@@ -1,0 +1,190 @@
+"""The headless run: joint moments fed back from the state, a servo on the crank, power measured on its load side."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import mujoco
+import numpy as np
+
+from fes_mj.arrays import ComplexArray, FloatArray
+from fes_mj.design import LEGS, Design, Leg
+from fes_mj.joints import JOINTS, PerJoint
+from fes_mj.moments import JointMoments
+from fes_mj.segments import GRAVITY
+from fes_mj.simulation.appearance import Spec
+from fes_mj.simulation.mjcf import build_mjcf
+from fes_mj.simulation.sensors import Sensors
+from fes_mj.simulation.stepping import PRE_ROLL, LoopMaker, Run, feedback_loop, run_loop
+from fes_mj.time_step import steps_per_turn
+from fes_mj.torque_map import TorqueMap, torque_map
+
+
+@dataclass(frozen=True)
+class Energy:
+    """Energy balance of the measured turns, J: joint_work = crank_work + kinetic + potential + lost."""
+
+    joint_work: float  # by the hip and knee moments
+    crank_work: float  # on the load
+    kinetic: float  # change
+    potential: float  # change
+
+    @property
+    def lost(self) -> float:
+        """What went into the constraints and the integrator."""
+        return self.joint_work - self.crank_work - self.kinetic - self.potential
+
+    def as_json(self) -> dict[str, float]:
+        """Every term by name, J."""
+        return asdict(self) | {"lost": self.lost}
+
+
+@dataclass(frozen=True, eq=False)
+class Simulation:
+    """Whole measured turns; arrays have shape (steps,), sampled at the start of each step.
+
+    Dictionaries are by joint name ("hip", "knee", "crank", "rocker", "coupler"; with two legs "right_hip" ...; moments
+    only of hips and knees), the loop ones by the name of the cut joint ("pedal", "crank_pin"). A loop's force is
+    complex, in the linkage's plane, and sampled at every eighth step (FORCE_EVERY).
+    """
+
+    design: Design
+    torque: TorqueMap
+    cadence: float  # rad/s, commanded
+    timestep: float  # s
+    turns: int
+    legs: tuple[Leg, ...]
+    mass_scale: float
+    gravity: float  # m/s^2
+    crank_angle: FloatArray  # rad
+    crank_speed: FloatArray  # rad/s
+    crank_moment: FloatArray  # N m on the load, all legs together
+    joint_angle: dict[str, FloatArray]  # rad
+    joint_speed: dict[str, FloatArray]  # rad/s
+    joint_moment: dict[str, FloatArray]  # N m
+    loop_gap: dict[str, FloatArray]  # m
+    loop_force: dict[str, ComplexArray]  # N
+    energy: Energy
+
+    @property
+    def moments(self) -> JointMoments:
+        return self.torque.moments
+
+    @property
+    def power(self) -> FloatArray:
+        """Crank power on the load, all legs together, W."""
+        return self.crank_moment * self.crank_speed
+
+    @property
+    def power_mean(self) -> float:
+        """Mean crank power of one leg over the measured turns, W."""
+        return float(self.power.mean()) / len(self.legs)
+
+    @property
+    def joint_range_deg(self) -> PerJoint[list[float]]:
+        """Smallest and largest angle of knees and hips, deg."""
+
+        def span(joint: str) -> list[float]:
+            angles = np.degrees([angle for name, angle in self.joint_angle.items() if name.endswith(joint)])
+            return [float(angles.min()), float(angles.max())]
+
+        return PerJoint.of(span)
+
+    @property
+    def loop_gap_max(self) -> float:
+        """Largest distance between the two sides of a cut joint, m."""
+        return max(float(gap.max()) for gap in self.loop_gap.values())
+
+    @property
+    def cadence_ripple(self) -> float:
+        """Largest relative deviation of the crank speed from the cadence."""
+        return float(np.abs(self.crank_speed / self.cadence - 1).max())
+
+
+def simulate(
+    design: Design,
+    moments: JointMoments,
+    *,
+    cadence: float | None = None,
+    timestep: float | None = None,
+    turns: float = 1,
+    legs: int = 1,
+    mass_scale: float = 1.0,
+    gravity: float = GRAVITY,
+    loop_solref: tuple[float, float] | None = None,
+    make_loop: LoopMaker = feedback_loop,
+    torque: TorqueMap | None = None,
+    edit: Callable[[Spec], None] | None = None,
+    pre_roll: int = PRE_ROLL,
+) -> Simulation:
+    """Run turns of the model of build_mjcf (same arguments) under the torque map of `moments`.
+
+    make_loop: compiled.compiled_loop steps in machine code, which pays beyond some hundred turns. torque: another map
+    instead. edit: changes the MjSpec before it is compiled. pre_roll: steps before the first that is measured. Raises
+    AssemblyError if the linkage does not close, UnstableError if the integration breaks down.
+    """
+    cadence, torque = cadence or design.linkage.cadence, torque or torque_map(moments)
+    spec = build_mjcf(
+        design,
+        cadence=cadence,
+        timestep=timestep,
+        legs=legs,
+        mass_scale=mass_scale,
+        gravity=gravity,
+        loop_solref=loop_solref,
+        drawn=False,
+    )
+    if edit:
+        edit(spec)
+    model, steps = spec.compile(), round(turns * steps_per_turn(design, cadence, timestep))
+    drives = joint_drives(LEGS[legs])
+    run = run_loop(model, make_loop(torque, drives), steps, pre_roll)
+    return Simulation(
+        design=design,
+        torque=torque,
+        cadence=cadence,
+        timestep=model.opt.timestep,
+        turns=int(turns),
+        legs=LEGS[legs],
+        mass_scale=mass_scale,
+        gravity=gravity,
+        **_measured(model, run, torque, drives),
+    )
+
+
+def _measured(model: mujoco.MjModel, run: Run, torque: TorqueMap, drives: dict[str, str]) -> dict[str, Any]:
+    """The measured fields of Simulation, out of the records of a run."""
+    rows, loops = Sensors(model, run.sensors), [model.equality(i).name for i in range(model.neq)]
+    forces, closed = run.fields["efc_force"], [loop for loop in loops if model.equality(loop).active0]
+    angle = {name: rows[f"{name}_angle"][:-1] for name in rows.joints}
+    speed = {name: rows[f"{name}_speed"] for name in rows.joints}
+    moment = {name: torque.moment(joint, angle[name], speed[name][:-1]) for name, joint in drives.items()}
+    crank_moment = rows.crank_moment()[:-1]
+
+    def work(of: FloatArray, at: FloatArray) -> float:
+        """A moment that is held over each step, times the angle of the step."""
+        return float(of @ (at[:-1] + at[1:])) / 2 * float(model.opt.timestep)
+
+    return {
+        "crank_angle": angle["crank"],
+        "crank_speed": speed["crank"][:-1],
+        "crank_moment": crank_moment,
+        "joint_angle": angle,
+        "joint_speed": {name: values[:-1] for name, values in speed.items()},
+        "joint_moment": moment,
+        "loop_gap": {loop: np.linalg.norm(rows.vector(f"{loop}_gap")[:-1], axis=1) for loop in loops},
+        "loop_force": {loop: forces[:, 3 * i] + 1j * forces[:, 3 * i + 2] for i, loop in enumerate(closed)},
+        "energy": Energy(
+            joint_work=sum(work(moment[name], speed[name]) for name in drives),
+            crank_work=work(crank_moment, speed["crank"]),
+            kinetic=run.end_energy[1] - run.start_energy[1],
+            potential=run.end_energy[0] - run.start_energy[0],
+        ),
+    }
+
+
+def joint_drives(legs: tuple[Leg, ...]) -> dict[str, str]:
+    """Name of each driven joint in the model -> "knee" or "hip"."""
+    return {leg.prefix + joint: joint for leg in legs for joint in JOINTS}

@@ -1,0 +1,29 @@
+"""Sensor rows of a model read by name."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from fes_mj.arrays import FloatArray
+
+
+class Sensors:
+    """Rows of MjData.sensordata, shape (rows, size), and the model they are of."""
+
+    def __init__(self, model: Any, rows: FloatArray) -> None:
+        self._rows = rows
+        self._column = {model.sensor(i).name: int(model.sensor(i).adr[0]) for i in range(model.nsensor)}
+        self.joints = [model.joint(i).name for i in range(model.njnt)]
+
+    def __getitem__(self, name: str) -> FloatArray:
+        """A sensor of one number, shape (rows,)."""
+        return self._rows[:, self._column[name]]
+
+    def vector(self, name: str) -> FloatArray:
+        """A sensor of three numbers, shape (rows, 3)."""
+        start = self._column[name]
+        return self._rows[:, start : start + 3]
+
+    def crank_moment(self) -> FloatArray:
+        """Moment on the load, N m, shape (rows,): the frame brakes the crank about +y, against its turning about -y."""
+        return self.vector("crank_torque")[:, 1]

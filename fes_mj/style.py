@@ -1,0 +1,52 @@
+"""One look for video, figures, pages and reports: colours, and which way riders face.
+
+Matplotlib users apply STYLE with matplotlib.rc_context; matplotlib itself is not imported here.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+# What is plotted
+COLOURS = {
+    "knee": "#00a2bf",
+    "hip": "#c4189a",
+    "total": "#20242c",
+    "mujoco": "#1f4fd8",
+    "reference": "#8a8f98",  # the exact inverse dynamics
+    "quasi-static": "#d97a00",
+    "comparison": "#3a7d44",  # another design beside this one
+}
+# Bodies; the video's materials and the figures' lines
+LINKS = {
+    "thigh": "#cdb399",
+    "shank": "#e0c9b0",
+    "crank": "#e07d28",
+    "rocker": "#736bad",
+    "coupler": "#5c945c",
+}
+GOOD, BAD = "#1a7f37", "#c01c28"
+INK, FAINT = "#20242c", "#5a606c"
+
+# The paper's x runs backwards. Pictures show it to the left, so that riders face right, as in the video.
+X_LABEL = "x, m (backwards; the rider faces right)"
+
+STYLE: dict[Any, Any] = {
+    "font.family": "sans-serif",
+    "font.size": 9,
+    "axes.grid": True,
+    "grid.alpha": 0.25,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "legend.frameon": False,
+    "legend.fontsize": 8,
+    "lines.linewidth": 1.5,
+    "svg.hashsalt": "fes_mj",  # the same file from the same numbers
+    "svg.fonttype": "none",  # text stays text
+}
+
+
+def rgb(colour: str) -> tuple[float, float, float]:
+    """Red, green and blue of "#rrggbb", each 0 to 1."""
+    red, green, blue = (round(int(colour[i : i + 2], 16) / 255, 3) for i in (1, 3, 5))
+    return red, green, blue

@@ -1,0 +1,1 @@
+"""What people look at: video, interactive viewer, drawings."""

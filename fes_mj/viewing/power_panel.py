@@ -1,0 +1,75 @@
+"""The right half of the video: crank power over the turn, dynamic and static, with a cursor that moves."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from PIL import Image, ImageDraw
+
+from fes_mj.arrays import Picture
+from fes_mj.crosscheck import Case
+from fes_mj.style import BAD, COLOURS, FAINT, GOOD, INK, STYLE
+from fes_mj.units import RPM
+from fes_mj.viewing.charts import plot_power
+
+_DPI = 100
+
+
+class PowerPanel:
+    """Draws the curves once; each frame is a copy with the cursor at another step."""
+
+    def __init__(self, case: Case, width: int, height: int) -> None:
+        run = case.simulation
+        steps = len(run.crank_angle) // run.turns
+        self._angle = np.degrees(run.crank_angle[:steps]) % 360
+        self._power = run.power[:steps]
+        with mpl.rc_context(STYLE):
+            figure = Figure(figsize=(width / _DPI, height / _DPI), dpi=_DPI, facecolor="white")
+            canvas = FigureCanvasAgg(figure)
+            self._axes = figure.add_axes((0.14, 0.30, 0.81, 0.49))
+            plot_power(self._axes, case)
+            self._axes.axhline(len(run.legs) * run.power_mean, color=COLOURS["mujoco"], lw=1, ls=":")
+            self._axes.legend(loc="lower left", bbox_to_anchor=(-0.02, 1.0), fontsize=11)
+            _write_facts(figure, case)
+            canvas.draw()  # type: ignore[no-untyped-call]
+        self._background = np.asarray(canvas.buffer_rgba())[..., :3].copy()  # type: ignore[no-untyped-call]
+        self._height = height
+
+    def frame(self, step: int) -> Picture:
+        """The panel with the cursor at a step of the turn, shape (height, width, 3)."""
+        picture = Image.fromarray(self._background)
+        draw = ImageDraw.Draw(picture)
+        (x, y), (_, bottom), (_, top) = (
+            self._pixel(self._angle[step], power) for power in (self._power[step], *self._axes.get_ylim())
+        )
+        draw.line([(x, bottom), (x, top)], fill=INK, width=2)
+        draw.ellipse([x - 6, y - 6, x + 6, y + 6], fill=COLOURS["mujoco"], outline="white", width=2)
+        return np.asarray(picture)
+
+    def _pixel(self, angle: float, power: float) -> tuple[float, float]:
+        x, y = self._axes.transData.transform((angle, power))
+        return float(x), self._height - float(y)
+
+
+def _write_facts(figure: Any, case: Case) -> None:
+    """Title above and the numbers below the curves."""
+    run, static = case.simulation, case.static
+    design, rpm = run.design, run.cadence / RPM
+    figure.text(0.05, 0.955, f"{design.name.upper()}: {design.linkage.architecture.title}", size=13, weight="bold")
+    legs = "one leg" if len(run.legs) == 1 else "two legs"
+    figure.text(0.05, 0.925, f"joint moments {run.moments.name.upper()}, {rpm:.1f} rpm, {legs}", size=11, color=FAINT)
+    facts = (
+        ("mean power, dynamic", f"{run.power_mean:.3f} W a leg", COLOURS["mujoco"]),
+        ("mean power, quasi-static", f"{static.power_mean:.3f} W a leg", COLOURS["quasi-static"]),
+        ("difference", case.difference_text, "black"),
+        ("largest loop gap", f"{1e6 * run.loop_gap_max:.1f} µm", "black"),
+    )
+    for row, (name, value, colour) in enumerate(facts):
+        figure.text(0.14, 0.185 - 0.038 * row, name, size=12, color=colour)
+        figure.text(0.95, 0.185 - 0.038 * row, value, size=12, color=colour, ha="right", family="DejaVu Sans")
+    verdict = "dynamic and static agree" if case.agrees else "dynamic and static DO NOT agree"
+    figure.text(0.14, 0.025, verdict, size=12, weight="bold", color=GOOD if case.agrees else BAD)

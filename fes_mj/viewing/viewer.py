@@ -1,0 +1,36 @@
+"""A design running in MuJoCo's interactive viewer, under the torque map and the crank servo."""
+
+from __future__ import annotations
+
+import time
+
+import mujoco
+import mujoco.viewer
+
+from fes_mj.design import TWO_LEGS, Design
+from fes_mj.moments import JointMoments
+from fes_mj.simulation.bench import joint_drives
+from fes_mj.simulation.export import mjcf_text, scene_text
+from fes_mj.simulation.mjcf import build_mjcf
+from fes_mj.simulation.stepping import drive_addresses
+from fes_mj.torque_map import torque_map
+
+
+def show(design: Design, moments: JointMoments, cadence: float) -> None:
+    """Run in real time, two legs, until the viewer is closed."""
+    model = mujoco.MjModel.from_xml_string(
+        scene_text(design, "model.xml"), {"model.xml": mjcf_text(build_mjcf(design, cadence=cadence, legs=2)).encode()}
+    )
+    data, torque = mujoco.MjData(model), torque_map(moments)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    drives = [(*drive_addresses(model, name), torque.feedback(joint)) for name, joint in joint_drives(TWO_LEGS).items()]
+    with mujoco.viewer.launch_passive(model, data, show_left_ui=False, show_right_ui=False) as viewer:
+        viewer.cam.type, viewer.cam.fixedcamid = mujoco.mjtCamera.mjCAMERA_FIXED, model.camera("side").id
+        start = time.monotonic()
+        while viewer.is_running():
+            while data.time < time.monotonic() - start:
+                for actuator, position, speed, moment in drives:
+                    data.ctrl[actuator] = moment(float(data.qpos[position]), float(data.qvel[speed]))
+                mujoco.mj_step(model, data)
+            viewer.sync()
+            time.sleep(1 / 60)

@@ -1,0 +1,101 @@
+"""Ctrl-C and kill: earlier results stay as they were, nothing is half-written."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+pytestmark = pytest.mark.skipif(not Path("/proc/self/maps").exists(), reason="looks into /proc to see what runs")
+PATIENCE = 60  # s
+# A shell shows 130 for both: Python ends by the signal itself if it came while a text was being executed.
+INTERRUPTED = (130, -signal.SIGINT)
+
+
+def _run(*arguments: str) -> None:
+    subprocess.run([sys.executable, "-m", "fes_mj", *arguments], check=True, capture_output=True)
+
+
+def _stop(how: signal.Signals, *arguments: str) -> tuple[int, str]:
+    """Start a long run, stop it in the middle; exit code and standard error."""
+    command = [sys.executable, "-m", "fes_mj", *arguments]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        begin, maps = time.monotonic(), Path(f"/proc/{process.pid}/maps")
+        while "libmujoco" not in maps.read_text():  # it has begun to simulate
+            assert process.poll() is None, process.communicate()
+            assert time.monotonic() - begin < PATIENCE
+            time.sleep(0.05)
+        time.sleep(0.7)
+        assert process.poll() is None, "the run was over before it could be stopped"
+        process.send_signal(how)
+        _, errors = process.communicate(timeout=PATIENCE)
+        return process.returncode, errors
+
+
+def _contents(folder: Path) -> dict[str, bytes]:
+    return {path.name: path.read_bytes() for path in folder.iterdir()}
+
+
+@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
+def test_an_interrupted_run_leaves_earlier_results(how: signal.Signals, tmp_path: Path) -> None:
+    _run("simulate", "d1", "--out", str(tmp_path))
+    before = _contents(tmp_path)
+    assert len(before) == 3
+    code, errors = _stop(how, "simulate", "d1", "--turns", "1000", "--out", str(tmp_path))
+    assert _contents(tmp_path) == before
+    if how is signal.SIGINT:
+        assert code in INTERRUPTED
+        assert errors == "fes_mj: interrupted; nothing was left half-written\n"
+    else:
+        assert code == -how
+
+
+def test_an_interrupted_validation_writes_nothing(tmp_path: Path) -> None:
+    report, junit = tmp_path / "out.html", tmp_path / "out.xml"
+    report.write_text("an earlier report")
+    code, errors = _stop(signal.SIGINT, "validate", "--faults", "--report", str(report), "--junit", str(junit))
+    assert code in INTERRUPTED
+    assert "Traceback" not in errors
+    assert _contents(tmp_path) == {"out.html": b"an earlier report"}
+
+
+def test_a_kill_in_the_middle_of_writing_leaves_the_old_file(tmp_path: Path) -> None:
+    """Nothing can be tidied up after SIGKILL; but what stands under the name is whole."""
+    target = tmp_path / "result.json"
+    target.write_text("old")
+    script = (
+        "import os, signal, sys, pathlib\n"
+        "from fes_mj.files import replacing\n"
+        "with replacing(pathlib.Path(sys.argv[1])) as beside:\n"
+        "    beside.write_text('half')\n"
+        "    os.kill(os.getpid(), signal.SIGKILL)\n"
+    )
+    done = subprocess.run([sys.executable, "-c", script, str(target)], env=dict(os.environ), check=False)
+    assert done.returncode == -signal.SIGKILL
+    assert target.read_text() == "old"
+
+
+def test_a_compiled_module_that_was_being_loaded_counts_as_interrupted(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from fes_mj.cli import app as cli
+
+    def loading(*_: object, **__: object) -> None:
+        try:
+            raise ImportError("initialization failed") from KeyboardInterrupt()
+        except ImportError as error:
+            raise ImportError("initialization failed") from error
+
+    monkeypatch.setattr(cli, "app", loading)
+    assert cli.run(["simulate", "d1"]) == 130
+    assert capsys.readouterr().err == "fes_mj: interrupted; nothing was left half-written\n"
+
+    def missing(*_: object, **__: object) -> None:
+        raise ImportError("no such module")
+
+    monkeypatch.setattr(cli, "app", missing)
+    with pytest.raises(ImportError, match="no such module"):
+        cli.run(["simulate", "d1"])

@@ -1,0 +1,244 @@
+"""The exported files: the model reloads bit for bit, geoms are pictures, variants, scene, table, bad input."""
+
+from __future__ import annotations
+
+import csv
+import itertools
+import math
+from importlib.resources import files
+from pathlib import Path
+from typing import get_args
+from xml.etree import ElementTree
+
+import mujoco
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from fes_mj import load_design, load_moments
+from fes_mj.checks import definitions
+from fes_mj.cli.app import run
+from fes_mj.cli.export import _Variant
+from fes_mj.design import LEGS
+from fes_mj.design_file import DESIGNS
+from fes_mj.errors import InputError
+from fes_mj.segments import inertias
+from fes_mj.simulation.bench import joint_drives, simulate
+from fes_mj.simulation.export import VARIANTS, mjcf_text, scene_text, sidecar_text, variant_options
+from fes_mj.simulation.mjcf import build_mjcf
+from fes_mj.simulation.sensors import Sensors
+from fes_mj.simulation.stepping import feedback_loop, run_loop
+from fes_mj.statics import quasi_static
+from fes_mj.time_step import steps_per_turn
+from fes_mj.torque_map import TorqueMap
+
+COMBINATIONS = [
+    combination
+    for count in range(4)
+    for combination in itertools.combinations(["bodies", "passive", "two-legs", "compatible"], count)
+]
+
+
+def compiled_bytes(model: mujoco.MjModel) -> NDArray[np.uint8]:
+    """The whole compiled model, as MuJoCo would write it to a binary file."""
+    buffer = np.zeros(mujoco.mj_sizeModel(model), np.uint8)
+    mujoco.mj_saveModel(model, None, buffer)
+    return buffer
+
+
+@pytest.mark.parametrize("name", DESIGNS)
+@pytest.mark.parametrize("variants", COMBINATIONS, ids="+".join)
+def test_reloads_bit_for_bit(name: str, variants: tuple[str, ...]) -> None:
+    design = load_design(name)
+    for cadence in (None, 2 * math.pi):
+        options = variant_options(variants) | {"cadence": cadence}
+        written = build_mjcf(design, **options).compile()
+        reloaded = mujoco.MjModel.from_xml_string(mjcf_text(build_mjcf(design, **options)))
+        assert np.array_equal(compiled_bytes(written), compiled_bytes(reloaded))
+
+
+@pytest.mark.parametrize("legs", [1, 2])
+@pytest.mark.parametrize("name", DESIGNS)
+def test_geoms_are_pictures_only(name: str, legs: int) -> None:
+    """Geoms neither weigh nor touch; every body wears one; hinges and pins stay in one plane."""
+    design = load_design(name)
+    model = build_mjcf(design, legs=legs).compile()
+    assert not model.geom_contype.any()
+    assert not model.geom_conaffinity.any()
+    masses = inertias(design)
+    for number in range(1, model.nbody):
+        body = model.body(number)
+        assert number in model.geom_bodyid, body.name
+        segment = body.name.removeprefix("right_").removeprefix("left_")
+        arms = legs if segment == "crank" else 1
+        assert body.mass == pytest.approx(masses[segment].mass * arms if segment in masses else 0, rel=1e-15)
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    mujoco.mj_forward(model, data)
+    for loop in range(model.neq):
+        first, second = (data.site_xpos[ends[loop]] for ends in (model.eq_obj1id, model.eq_obj2id))
+        assert first[1] == second[1]
+        assert np.linalg.norm(first - second) < 1e-15
+
+
+def test_no_link_hides_another() -> None:
+    """Bars of one linkage that can cross in the side view lie in layers that do not touch."""
+    model = build_mjcf(load_design("d1")).compile()
+    reach = {}
+    for body in ("crank", "coupler", "rocker"):
+        geom = model.geom(f"{body}_bar")
+        reach[body] = (geom.pos[1] - geom.size[0], geom.pos[1] + geom.size[0])
+    for (low, high), (other_low, other_high) in itertools.combinations(reach.values(), 2):
+        assert high < other_low or other_high < low
+
+
+def test_the_variants_differ_in_what_they_say() -> None:
+    design = load_design("d1")
+    models = {name: build_mjcf(design, **options).compile() for name, options in VARIANTS.items()}
+    assert {name: model.nu for name, model in models.items()} == {
+        "sites": 3,
+        "bodies": 3,
+        "passive": 0,
+        "two-legs": 5,
+        "compatible": 2,
+    }
+    site, body = mujoco.mjtObj.mjOBJ_SITE, mujoco.mjtObj.mjOBJ_BODY
+    assert {name for name, model in models.items() if (model.eq_objtype == body).all()} == {"bodies"}
+    assert all((model.eq_objtype == site).all() for name, model in models.items() if name != "bodies")
+    assert {name: model.nv for name, model in models.items()} == dict.fromkeys(VARIANTS, 5) | {"two-legs": 9}
+    assert models["compatible"].opt.integrator == mujoco.mjtIntegrator.mjINT_EULER
+    assert models["compatible"].joint("crank").armature == 1e6
+    assert variant_options(["two-legs", "passive"]) == {"legs": 2, "driven": False}
+    assert get_args(_Variant) == tuple(VARIANTS)
+
+
+def test_contrary_and_unknown_variants_are_refused() -> None:
+    with pytest.raises(InputError, match="sites and bodies exclude each other"):
+        variant_options(["sites", "bodies"])
+    with pytest.raises(InputError, match="'mjx'; it must be one of sites, bodies"):
+        variant_options(["mjx"])
+
+
+@pytest.mark.parametrize("name", DESIGNS)
+def test_the_compatible_variant_gives_the_power_of_statics(name: str) -> None:
+    """Euler and a flywheel in the place of `discrete` and a servo: same limits as the cross-check."""
+    design, moments = load_design(name), load_moments()
+    model = build_mjcf(design, integrator="euler").compile()
+    loop = feedback_loop(TorqueMap(moments), joint_drives(LEGS[1]))
+    record = run_loop(model, loop, steps_per_turn(design, design.linkage.cadence))
+    rows = Sensors(model, record.sensors[:-1])
+    speed = rows["crank_speed"]
+    power = rows.crank_moment() * speed
+    assert power.mean() == pytest.approx(
+        quasi_static(design, moments).power_mean, rel=definitions()["mean_power"].limit
+    )
+    assert np.abs(speed / design.linkage.cadence - 1).max() < definitions()["cadence_ripple"].limit
+    gaps = [rows.vector(f"{model.equality(i).name}_gap") for i in range(model.neq)]
+    assert np.linalg.norm(gaps, axis=2).max() < definitions()["loop_gap"].limit
+
+
+@pytest.mark.parametrize("name", DESIGNS)
+def test_every_comment_stands_in_the_file_and_no_number_is_shortened(name: str) -> None:
+    text = mjcf_text(build_mjcf(load_design(name)))
+    assert text.count("<!--") == 11  # the heading and all but the flywheel's
+    assert mjcf_text(build_mjcf(load_design(name), integrator="euler")).count("<!--") == 10  # no discrete, no servo
+    assert f'timestep="{float(build_mjcf(load_design(name)).option.timestep)!r}"' in text
+
+
+@pytest.mark.parametrize("name", DESIGNS)
+def test_the_scene_shows_the_whole_turn_above_its_floor(name: str, tmp_path: Path) -> None:
+    design = load_design(name)
+    (tmp_path / "model.xml").write_text(mjcf_text(build_mjcf(design)))
+    (tmp_path / "scene.xml").write_text(scene_text(design, "model.xml"))
+    model = mujoco.MjModel.from_xml_path(str(tmp_path / "scene.xml"))
+    assert {model.camera(i).name for i in range(model.ncam)} == {"side", "oblique"}
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    joints = [model.joint(i).name for i in range(model.njnt)]
+    steps = steps_per_turn(design, design.linkage.cadence)
+    lowest, shown = math.inf, True
+    for step in range(steps):
+        mujoco.mj_step(model, data)
+        if step % 40 == 0:
+            corners = data.geom("boot").xpos + data.geom("boot").xmat.reshape(3, 3)[:, 2] * [[-0.09], [0.09]]
+            lowest = min(lowest, corners[:, 2].min())
+            points = [*corners, *(data.joint(joint).xanchor for joint in joints)]
+            shown &= all(_in_picture(model, data, camera, np.array(points)) for camera in ("side", "oblique"))
+    assert data.joint("crank").qpos[0] == pytest.approx(2 * np.pi, rel=1e-3)
+    assert shown
+    assert lowest - 0.05 > model.geom("floor").pos[2]
+
+
+def _in_picture(model: mujoco.MjModel, data: mujoco.MjData, camera: str, points: NDArray[np.float64]) -> bool:
+    """Whether all points lie in a picture of 4:3."""
+    view, half = data.camera(camera), math.tan(math.radians(model.camera(camera).fovy[0]) / 2)
+    seen = (points - view.xpos) @ view.xmat.reshape(3, 3)  # right, up, backwards
+    x, y = seen[:, 0] / -seen[:, 2], seen[:, 1] / -seen[:, 2]
+    return bool((np.abs(y) < half).all() and (np.abs(x) < half * 4 / 3).all() and (seen[:, 2] < 0).all())
+
+
+@pytest.mark.parametrize("legs", [1, 2])
+def test_the_table_holds_what_the_simulation_measures(legs: int) -> None:
+    """Sidecar against the run of the same model, an independent way to the same numbers."""
+    design, moments = load_design("r2"), load_moments()
+    rows = [*csv.reader(sidecar_text(design, moments, legs=legs).splitlines())]
+    table = dict(zip(rows[0], np.array(rows[1:], float).T, strict=True))
+    measured = simulate(design, moments, legs=legs)
+    assert set(table) == {"crank_angle_deg", "crank_Nm", "quasi_static_crank_Nm"} | {
+        f"{joint}_{unit}" for joint in joint_drives(measured.legs) for unit in ("deg", "Nm")
+    }
+    turn = np.degrees(measured.crank_angle)
+
+    def at(column: str) -> NDArray[np.float64]:
+        return np.interp(turn, table["crank_angle_deg"], table[column], period=360)
+
+    for joint in joint_drives(measured.legs):
+        assert at(f"{joint}_deg") == pytest.approx(np.degrees(measured.joint_angle[joint]), abs=0.01)
+    assert np.sqrt(np.mean((at("crank_Nm") - measured.crank_moment) ** 2)) < 0.05
+    assert table["crank_Nm"].mean() == pytest.approx(table["quasi_static_crank_Nm"].mean(), rel=1e-3)
+    power = legs * quasi_static(design, moments).power_mean
+    assert table["quasi_static_crank_Nm"].mean() * measured.cadence == pytest.approx(power, rel=1e-3)
+
+
+def test_export_writes_model_table_and_scene(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    model = tmp_path / "mine.xml"
+    arguments = ["export", "d1", "-o", str(model), "--variant", "two-legs", "--variant", "passive", "--scene"]
+    assert run(arguments) == 0
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["mine.csv", "mine.xml", "scene.xml"]
+    loaded = mujoco.MjModel.from_xml_path(str(tmp_path / "scene.xml"))
+    assert (loaded.nu, loaded.nv) == (0, 9)
+    assert (tmp_path / "mine.csv").read_text().startswith("crank_angle_deg,right_knee_deg,")
+    assert str(model) in capsys.readouterr().out
+
+
+def test_any_file_name_gives_valid_xml(tmp_path: Path) -> None:
+    source = Path(str(files("fes_mj"))) / "data" / "designs" / "identified" / "r1.toml"
+    design, model = tmp_path / 'R&D --> "1".toml', tmp_path / 'R&D "1" <new>.xml'
+    design.write_text(source.read_text())
+    assert run(["export", str(design), "-o", str(model), "--scene"]) == 0
+    for path in (model, tmp_path / "scene.xml"):
+        ElementTree.parse(path)
+        assert mujoco.MjModel.from_xml_path(str(path)).njnt == 5
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["d1", "-o", "{folder}/x.xml", "--variant", "mjx"], "--variant"),
+        (["d1", "-o", "{folder}"], "this is a folder"),
+        (["d1", "-o", "{folder}/x.txt"], "must end in .xml"),
+        (["d1", "-o", "{folder}/none/x.xml"], "does not exist"),
+        (["d1", "-o", "{folder}/scene.xml", "--scene"], "another name"),
+        (["d1", "-o", "{folder}/x.xml", "--variant", "sites", "--variant", "bodies"], "exclude each other"),
+        (["r2", "--dims", "printed", "-o", "{folder}/x.xml"], "cannot close at crank angle"),
+    ],
+)
+def test_bad_input_is_one_message_and_no_file(
+    arguments: list[str], said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(["export", *(part.format(folder=tmp_path) for part in arguments)]) == 2
+    written = capsys.readouterr()
+    assert said in written.err
+    assert "Traceback" not in written.err
+    assert not written.out
+    assert not [*tmp_path.iterdir()]

@@ -1,0 +1,102 @@
+"""The work of a turn from its reversals, against the quasi-static solver and an integral of its own."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import fes_mj
+from fes_mj import kinematics
+from fes_mj.cycles import WorkTable, cycles, joint_speeds, reversals, take
+from fes_mj.geometry import require_assembly
+from fes_mj.statics import quasi_static
+from fes_mj.variables import lengths, replaced, with_lengths
+
+FINE = 36_000
+LEGS = 0.03  # m
+
+
+def varied(design: fes_mj.Design, count: int, seed: int = 0) -> fes_mj.Design:
+    """A batch around a design, six-bar lengths by up to 1 cm and legs by up to 3 cm; some cannot turn."""
+    random = np.random.default_rng(seed)
+    drawn = lengths(design)[:, None, None] + random.uniform(-0.01, 0.01, (9, count, 1))
+    return replaced(with_lengths(design, drawn), {"thigh": 0.52 + random.uniform(-LEGS, LEGS, (count, 1))})
+
+
+def single(batch: fes_mj.Design, row: int) -> fes_mj.Design:
+    """One design of a batch, in plain numbers."""
+    one = take(batch, [row])
+    parts = {
+        name: np.ravel(value)[0].item() for name, value in vars(one.linkage).items() if isinstance(value, np.ndarray)
+    }
+    rider = replace(one.rider, thigh=float(np.ravel(one.rider.thigh)[0]))
+    return replace(one, linkage=replace(one.linkage, **parts), rider=rider)
+
+
+def test_work_is_that_of_the_quasi_static_solver(design: fes_mj.Design, moments: fes_mj.JointMoments) -> None:
+    exact = quasi_static(design, moments, points=FINE)
+    turn = cycles(design, WorkTable.of(moments))
+    assert turn.work[0, 0] == pytest.approx(exact.work_per_turn, rel=2e-5)
+    assert np.degrees(turn.low.knee[0]) == pytest.approx(np.degrees(exact.joint_angle.knee.min()), abs=1e-3)
+    assert np.degrees(turn.high.hip[0]) == pytest.approx(np.degrees(exact.joint_angle.hip.max()), abs=1e-3)
+
+
+def test_work_of_moments_nobody_fitted(design: fes_mj.Design, smooth_moments: fes_mj.JointMoments) -> None:
+    exact = quasi_static(design, smooth_moments, points=FINE)
+    error = cycles(design, WorkTable.of(smooth_moments)).work[0, 0] - exact.work_per_turn
+    # relative to what flows in and out, which the net work is a small difference of
+    flow = np.abs(exact.crank_moment).mean() * 2 * np.pi
+    assert abs(error) < 1e-4 * flow
+
+
+def test_travel_is_the_integral_of_the_absolute_rate(design: fes_mj.Design, moments: fes_mj.JointMoments) -> None:
+    motion = kinematics.solve(design, np.linspace(0, 2 * np.pi, FINE, endpoint=False))
+    speeds = joint_speeds(design, WorkTable.of(moments))
+    for joint, rate in (("knee", motion.joint_rate.knee), ("hip", motion.joint_rate.hip)):
+        exact = np.degrees(np.abs(rate).mean()) * design.linkage.cadence
+        assert speeds[joint] == pytest.approx(exact, rel=1e-3)
+
+
+@pytest.mark.parametrize("name", ["d1", "r2"])
+def test_a_batch_is_its_designs_one_by_one(name: str, moments: fes_mj.JointMoments) -> None:
+    batch, table = varied(fes_mj.load_design(name), 200), WorkTable.of(moments)
+    together = cycles(batch, table)
+    turning = together.reach > 0
+    assert 0 < turning.sum() < 200
+    for row in np.flatnonzero(turning)[:20]:
+        alone = cycles(single(batch, int(row)), table)
+        assert together.work[row, 0] == pytest.approx(alone.work[0, 0], rel=1e-12)
+        assert together.low.hip[row] == pytest.approx(alone.low.hip[0], rel=1e-12)
+    for row in np.flatnonzero(~turning)[:20]:
+        assert np.isnan(together.work[row]).all()
+        assert np.isnan(together.travel.knee[row])
+        with pytest.raises(fes_mj.AssemblyError):
+            require_assembly(single(batch, int(row)))
+
+
+def test_sets_of_moments_side_by_side_are_the_sets_alone() -> None:
+    design, both = fes_mj.load_design("d2"), [fes_mj.load_moments(group) for group in ("p1p2", "p1p3")]
+    together = cycles(design, WorkTable.of(*both)).work[0]
+    assert together == pytest.approx([cycles(design, WorkTable.of(each)).work[0, 0] for each in both], rel=1e-14)
+
+
+def test_work_does_not_depend_on_how_often_a_joint_reverses() -> None:
+    """Two strokes a turn do twice the work of one: the table's area is per stroke."""
+    table = WorkTable.of(fes_mj.load_moments("p1p2"))
+    angle = np.linspace(0, 2 * np.pi, 240, endpoint=False)
+    once = np.radians(95 + 20 * np.cos(angle))[None]
+    twice = np.radians(95 + 20 * np.cos(2 * angle))[None]
+    work = []
+    for motion in (once, twice):
+        _, turned, sign = reversals(motion)
+        work.append(float(sign @ table.area("knee", turned)[:, 0]))
+        assert len(turned) == 2 * len(work)
+    assert work[1] == pytest.approx(2 * work[0], rel=1e-9)
+    assert work[0] > 1.0
+
+
+def test_reversals_lie_between_the_samples() -> None:
+    angle = np.linspace(0, 2 * np.pi, 90, endpoint=False)
+    rows, turned, sign = reversals(np.stack([np.cos(angle - shift) for shift in (0.0, 0.011, 0.03, 2.0)]))
+    assert np.bincount(rows).tolist() == [2, 2, 2, 2]
+    assert turned == pytest.approx(sign, abs=2e-6)

@@ -1,0 +1,58 @@
+"""The massive reference against Lagrange's equation with spectral derivatives, which shares only the positions."""
+
+import numpy as np
+import pytest
+
+from fes_mj import kinematics
+from fes_mj.design import Design
+from fes_mj.inverse_dynamics import crank_moment
+from fes_mj.moments import JointMoments
+from fes_mj.segments import GRAVITY, inertias
+from fes_mj.statics import quasi_static, virtual_work
+from fes_mj.torque_map import torque_map
+
+
+def test_power_balance_with_spectral_energy(design: Design, smooth_moments: JointMoments) -> None:
+    """At constant speed: crank power = joint power - d(kinetic + potential energy)/dt."""
+    turn = np.linspace(0, 2 * np.pi, 4096, endpoint=False)
+    motion, cadence = kinematics.solve(design, turn), design.linkage.cadence
+    energy, order = np.zeros(turn.size), np.fft.fftfreq(turn.size, 1 / turn.size)
+
+    def derivative(values: np.ndarray) -> np.ndarray:
+        return np.fft.ifft(1j * order * np.fft.fft(values))
+
+    for body, inertia in inertias(design).items():
+        centre = motion.body_point(body, inertia.centre).value
+        direction = motion.direction(body)
+        turning = (derivative(direction) / (1j * direction)).real  # d angle / d crank angle
+        speed = cadence * np.abs(derivative(centre))
+        energy += inertia.mass * (speed**2 / 2 + GRAVITY * centre.imag)
+        energy += inertia.moment * (cadence * turning) ** 2 / 2
+    expected = virtual_work(motion, torque_map(smooth_moments).along(motion, cadence)) - derivative(energy).real
+    exact = crank_moment(motion, torque_map(smooth_moments), cadence)
+    assert np.abs(exact - expected).max() < 1e-6 * np.abs(exact).max()
+
+
+def test_masses_do_not_change_the_mean(design: Design, moments: JointMoments) -> None:
+    static = quasi_static(design, moments)
+    massive = crank_moment(static.motion, static.torque, static.cadence)
+    assert massive.mean() == pytest.approx(static.crank_moment.mean(), rel=1e-9)
+    assert np.ptp(massive - static.crank_moment) > 1.0  # and yet the moment itself is another
+
+
+def test_a_stretched_leg_weighs_what_it_should() -> None:
+    """Static moment about the hip of thigh and shank with foot lying horizontally, against the sum of their parts."""
+    from fes_mj.design_file import load_design
+    from fes_mj.segments import ANKLE_FROM_HEEL, DE_LEVA, FOOT_LENGTH
+
+    design, table = load_design("trt"), DE_LEVA["male"]
+    bodies = inertias(design)
+    assert bodies["thigh"].mass == pytest.approx(0.1416 * 75)
+    assert bodies["shank"].mass == pytest.approx((0.0433 + 0.0137) * 75)
+    to_ankle = np.exp(1j * design.boot_angle)
+    foot = table["foot"].centre - ANKLE_FROM_HEEL
+    centre = (
+        table["shank"].mass * table["shank"].centre * 0.52
+        + table["foot"].mass * (0.52 - 1j * foot * FOOT_LENGTH["male"])
+    ) / (table["shank"].mass + table["foot"].mass)
+    assert bodies["shank"].centre == pytest.approx(centre * to_ankle)

@@ -1,0 +1,85 @@
+"""Every injected fault is noticed by the check that is there for it, and leaves the case it was put into alone."""
+
+from pathlib import Path
+
+import pytest
+
+import fes_mj
+from fes_mj.checks import definitions
+from fes_mj.files import read_toml
+from fes_mj.paper.printed import table1
+from fes_mj.verification.case import VerificationCase
+from fes_mj.verification.faults import Fault, inject, passing
+from fes_mj.verification.mistakes import EDITS, STEPS, faults
+from fes_mj.verification.suite import FULL, benchmarks, verify
+
+ROOT = Path(__file__).parents[2]
+
+
+def _case(source: str) -> VerificationCase:
+    return VerificationCase(fes_mj.load_design(source), fes_mj.load_moments("p1p2"), expected=table1().get(source))
+
+
+@pytest.fixture(scope="module")
+def case() -> VerificationCase:
+    return _case("d1")
+
+
+@pytest.fixture(scope="module")
+def baseline(case: VerificationCase) -> dict[str, bool]:
+    return passing(case)
+
+
+def test_every_fault_is_explained_and_made_in_one_way() -> None:
+    rows = read_toml(ROOT / "fes_mj" / "data" / "faults.toml", "faults").content
+    assert STEPS.keys() | EDITS.keys() == rows.keys()
+    assert not STEPS.keys() & EDITS.keys()
+    assert {fault.guard for fault in faults()} <= set(definitions())
+
+
+def test_everything_holds_without_a_fault(baseline: dict[str, bool]) -> None:
+    assert [name for name, ok in baseline.items() if not ok] == []
+
+
+@pytest.mark.parametrize("fault", faults(), ids=lambda fault: fault.name)
+def test_the_guard_notices(fault: Fault, case: VerificationCase, baseline: dict[str, bool]) -> None:
+    assert fault.applies(case)
+    detection = inject(fault, case, baseline)
+    assert detection.guarded, [each.name for each in detection.failed]
+    assert all(baseline[each.name] for each in detection.failed)
+    assert detection.first is not None
+    assert detection.first.factor > 1
+
+
+@pytest.mark.parametrize("source", ["trt", "r1", str(ROOT / "results" / "optimization" / "r2-caution-1.toml")])
+def test_any_design_can_be_used(source: str) -> None:
+    case = _case(source)
+    baseline = passing(case)
+    assert all(baseline.values())
+    for fault in faults():
+        if fault.applies(case):
+            assert inject(fault, case, baseline).caught, fault.name
+        else:
+            assert fault.edit or case.design.linkage.kind not in fault.kinds, fault.name
+
+
+def test_a_fault_is_in_its_own_case_only(case: VerificationCase) -> None:
+    before = case.static.power_mean, case.simulation.power_mean
+    for fault in faults():
+        faulty = fault.put_into(case)
+        assert type(faulty) is not type(case)
+        assert not {"static", "simulation", "checks"} & vars(faulty).keys()  # nothing measured is taken over
+    assert type(case) is VerificationCase
+    again = VerificationCase(case.design, case.moments)
+    assert (again.static.power_mean, again.simulation.power_mean) == before
+
+
+def test_a_fault_that_no_check_can_see_is_reported_as_such(case: VerificationCase, baseline: dict[str, bool]) -> None:
+    detection = inject(Fault("none", "nothing at all", "mean_power"), case, baseline)
+    assert not detection.caught
+    assert detection.as_json()["check"] is None
+
+
+def test_the_suite_measures_every_registered_check(case: VerificationCase) -> None:
+    names = {each.name for each in verify(case, FULL)} | {each.name for each in benchmarks()}
+    assert names == set(definitions())

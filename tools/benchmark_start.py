@@ -1,0 +1,62 @@
+"""How long commands take to answer, in starts of a bare interpreter; ratios of one run, commands in turn.
+
+Prints a table and writes results/benchmark_start.json.
+"""
+
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+
+from fes_mj.console import print_table
+from fes_mj.files import json_text, write_text
+from fes_mj.provenance import provenance
+
+ROUNDS = 15
+PYTHON, COMMAND = sys.executable, str(Path(sys.executable).with_name("fes_mj"))
+MEASURE = """
+import time; import numpy, mujoco; from fes_mj import cross_check, load_design, load_moments
+d1, p1p2 = load_design("d1"), load_moments("p1p2"); start = time.perf_counter(); cross_check(d1, p1p2)
+print(time.perf_counter() - start)
+"""
+CANDIDATES = {
+    "bare interpreter": [PYTHON, "-c", "pass"],
+    "fes_mj --version": [COMMAND, "--version"],
+    "fes_mj --help": [COMMAND, "--help"],
+    "fes_mj static d1": [COMMAND, "static", "d1"],
+    "import numpy": [PYTHON, "-c", "import numpy"],
+    "import mujoco": [PYTHON, "-c", "import mujoco"],
+    "fes_mj simulate d1": [COMMAND, "simulate", "d1"],
+}
+
+
+def seconds(command: list[str]) -> float:
+    """Wall time of a whole process."""
+    start = time.perf_counter()
+    subprocess.run(command, check=True, capture_output=True)
+    return time.perf_counter() - start
+
+
+def main() -> None:
+    """Measure in turn, print, write."""
+    rounds = [{name: seconds(command) for name, command in CANDIDATES.items()} for _ in range(ROUNDS + 1)][1:]
+    check = [float(subprocess.run([PYTHON, "-c", MEASURE], check=True, capture_output=True).stdout) for _ in range(3)]
+    bare = np.array([each["bare interpreter"] for each in rounds])
+    ratio = {name: float(np.median([each[name] for each in rounds] / bare)) for name in CANDIDATES}
+    simulation = float(np.median(check) / np.median(bare))
+    # importing mujoco imports numpy
+    parts = ratio["import mujoco"] + simulation
+    report = {
+        "starts_of_a_bare_interpreter": ratio | {"the cross-check alone": simulation},
+        "simulate_per_its_parts": ratio["fes_mj simulate d1"] / parts,
+    }
+    rows = [(name, f"{value:.1f}") for name, value in report["starts_of_a_bare_interpreter"].items()]
+    rows.append(("simulate, per numpy + mujoco + cross-check", f"{report['simulate_per_its_parts']:.2f}"))
+    print_table("Starts of a bare interpreter", ("command", "ratio"), rows)
+    write_text(Path("results/benchmark_start.json"), json_text({"provenance": provenance(), **report}))
+
+
+if __name__ == "__main__":
+    main()
