@@ -32,6 +32,7 @@ benchmark: $(VENV)/.ready
 	$(BIN)/pip install --quiet -c constraints.txt -e '.[benchmark]'
 	$(BIN)/python -m tools.benchmark
 	$(BIN)/python -m tools.benchmark_start
+	$(BIN)/python -m tools.benchmark_exudyn
 	$(BIN)/python -m tools.benchmark_optimization
 
 # Every check on every design, refined, with all faults injected: results/verification.md

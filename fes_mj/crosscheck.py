@@ -20,8 +20,8 @@ from fes_mj.joints import PerJoint
 from fes_mj.kinematics import Motion
 from fes_mj.moments import JointMoments
 from fes_mj.segments import GRAVITY
-from fes_mj.simulation.bench import Simulation, simulate
 from fes_mj.simulation.appearance import Spec
+from fes_mj.simulation.bench import Simulation, simulate
 from fes_mj.simulation.mjcf import build_mjcf
 from fes_mj.statics import TURN_POINTS, Load, QuasiStatic, equilibrium, virtual_work
 from fes_mj.torque_map import TorqueMap, torque_map
@@ -172,12 +172,13 @@ class Case:
             self.check("mean_power", abs(run.power_mean - self.static.power_mean) / power),
             self.check("loop_gap", run.loop_gap_max),
             self.check("cadence_ripple", run.cadence_ripple),
-            self.check("inverse_dynamics", self._rms_per_leg(run, None)),
-            self.check("massless_statics", self._rms_per_leg(self.massless, 0.0)),
+            self.check("inverse_dynamics", self.rms_per_leg(run)),
+            self.check("massless_statics", self.rms_per_leg(self.massless, 0.0)),
             self.check("energy_balance", abs(run.energy.lost) / (power * duration * self.legs)),
         )
 
-    def _rms_per_leg(self, run: Simulation, mass_scale: float | None) -> float:
+    def rms_per_leg(self, run: Simulation, mass_scale: float | None = None) -> float:
+        """Instantaneous crank power of a run against reference_power, root mean square per leg, W."""
         difference = run.power - self.reference_power(run, mass_scale)
         return float(np.sqrt(np.mean(difference**2))) / len(run.legs)
 

@@ -17,7 +17,7 @@ from scipy.integrate import cumulative_trapezoid
 
 from fes_mj.arrays import FloatArray, IntArray
 from fes_mj.design import Design
-from fes_mj.joints import JOINTS, PerJoint
+from fes_mj.joints import PerJoint
 from fes_mj.kinematics import joint_angles, positions
 from fes_mj.moments import JointMoments
 from fes_mj.reference_tricycle import ReferenceTricycle
@@ -112,9 +112,15 @@ def cycles(design: Design, table: WorkTable, points: int = TURN_POINTS) -> Cycle
         travel = np.where(reach > 0, 2 * np.bincount(rows, sign * angle, len(reach)), np.nan)
         return low, high, travel, np.bincount(rows, minlength=len(reach))
 
-    knee, hip = (of_joint(joint) for joint in JOINTS)
-    low, high, travel = (PerJoint(knee[i], hip[i]) for i in range(3))
-    return Cycles(reach, low, high, travel, PerJoint(knee[3], hip[3]), work)
+    turns = PerJoint.of(of_joint)
+    return Cycles(
+        reach,
+        low=turns.map(lambda turn: turn[0]),
+        high=turns.map(lambda turn: turn[1]),
+        travel=turns.map(lambda turn: turn[2]),
+        reversals=turns.map(lambda turn: turn[3]),
+        work=work,
+    )
 
 
 def joint_speeds(design: Design, table: WorkTable) -> PerJoint[float]:

@@ -28,7 +28,8 @@ def require_extra(extra: str, *modules: str) -> ModuleType:
     Raises MissingPartError with the command that installs the one that is not there.
     """
     try:
-        return [import_module(module) for module in modules][0]
+        imported = [import_module(module) for module in modules]
     except ModuleNotFoundError as error:
         package = (error.name or modules[0]).partition(".")[0]
         raise MissingPartError(f"{package} is not installed; it comes with: pip install 'fes-mj[{extra}]'") from None
+    return imported[0]

@@ -38,7 +38,7 @@ def read_text(path: Path, what: str) -> str:
 
 @dataclass(frozen=True)
 class Section:
-    """A table of a TOML file whose keys are read one by one; every refusal names file, key, value and what is allowed."""
+    """A table of a TOML file, read key by key; every refusal names file, key, value and what is allowed."""
 
     path: Path
     name: str  # "" for the file itself

@@ -1,4 +1,4 @@
-"""What a linkage's geometry says before any force acts: does it close, how far do its joints go, how well it transmits."""
+"""A linkage before any force acts: does it close, how far do its joints go, how well does it transmit?"""
 
 from __future__ import annotations
 

@@ -64,7 +64,7 @@ class TorqueMap:
         return _interpolated(self.table[joint], source)
 
     def speed_factor(self, joint: str, angle: Any, rate: Any) -> FloatArray:
-        """Moment at this rate (rad/s) per moment at the rate of the measurement; 1 without a torque-velocity relation."""
+        """Moment at this rate (rad/s) per moment at that of the measurement; 1 without a torque-velocity relation."""
         source = self.source_angle(joint, angle, rate)
         return self._speed_factor(joint, source, self.at_source(joint, source), rate)
 

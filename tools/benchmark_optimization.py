@@ -18,31 +18,33 @@ import numpy as np
 from mujoco import rollout
 from scipy.optimize import fsolve
 
-from fes_mj.cli.output import json_text, print_table
-from fes_mj.compiled import compiled_loop
-from fes_mj.design import LEGS, Design
+from fes_mj.console import print_table
+from fes_mj.cycles import TURN_POINTS, WorkTable, cycles, joint_speeds
+from fes_mj.design import ONE_LEG, Design
 from fes_mj.design_file import load_design
-from fes_mj.files import write_text
-from fes_mj.mjcf import build_mjcf, steps_per_turn
-from fes_mj.optimization.cycles import TURN_POINTS, WorkTable, cycles, joint_speeds
+from fes_mj.files import json_text, write_text
+from fes_mj.moments import load_moments
 from fes_mj.optimization.problem import Problem
 from fes_mj.optimization.problem_file import load_limits
-from fes_mj.paper.identification import pack, unpack
 from fes_mj.provenance import provenance
-from fes_mj.simulation import joint_drives, simulate
-from fes_mj.torque import REFERENCE, TorqueMap, joint_angles, load_moments
+from fes_mj.reference_tricycle import PAPER_TRICYCLE
+from fes_mj.simulation.bench import joint_drives, simulate
+from fes_mj.simulation.compiled import compiled_loop
+from fes_mj.simulation.mjcf import build_mjcf
+from fes_mj.time_step import steps_per_turn
+from fes_mj.torque_map import torque_map
+from fes_mj.variables import lengths, with_lengths
 from tools.benchmark import pylinkage_six_bar, rates
 
 DESIGNS, TURNS, THREADS = 2000, 16, 2
 MOMENTS = load_moments("p1p2")
 
 
-def population(design: Design, count: int, step: float = 0.002) -> Design:
-    """Designs around one, all of which turn."""
-    lengths = pack(design.linkage)[:, None] + np.random.default_rng(0).uniform(-step, step, (9, 2 * count))
-    batch = replace(design, linkage=unpack(design.linkage, lengths[..., None]))
-    turning = np.flatnonzero(cycles(batch, WorkTable.of(MOMENTS)).reach > 0)[:count]
-    return replace(design, linkage=unpack(design.linkage, lengths[:, turning, None]))
+def population(design: Design, count: int, step: float = 0.002) -> np.ndarray:
+    """Lengths of designs around one, all of which turn, shape (9, count)."""
+    drawn = lengths(design)[:, None] + np.random.default_rng(0).uniform(-step, step, (9, 2 * count))
+    closed = np.flatnonzero(cycles(with_lengths(design, drawn[..., None]), WorkTable.of(MOMENTS)).reach > 0)
+    return drawn[:, closed[:count]]
 
 
 class ByHand:
@@ -55,14 +57,15 @@ class ByHand:
 
         self.design = design
         crank_angle = np.radians(np.arange(360.0))
-        motion = kinematics.solve(REFERENCE, crank_angle)
-        torque_map = TorqueMap(MOMENTS)
+        motion = kinematics.solve(PAPER_TRICYCLE.design, crank_angle)
+        torque = torque_map(MOMENTS)
         self.tables: dict[tuple[str, bool], tuple[Any, Any]] = {}
-        for joint, (angle, rate) in joint_angles(motion).items():
+        for joint, angle in motion.joint_angle.items():
+            rate = motion.joint_rate[joint]
             for extending in (True, False):
                 part = (rate >= 0) == extending
                 order = np.argsort(angle[part])
-                moment = torque_map.moment(joint, angle[part], rate[part])
+                moment = torque.moment(joint, angle[part], rate[part])
                 self.tables[joint, extending] = angle[part][order], moment[order]
         start = kinematics.positions(design, np.zeros(1))
         legs = (
@@ -110,14 +113,13 @@ def evaluations() -> dict[str, np.ndarray]:
     by_hand, step_fast = ByHand(design), pylinkage_six_bar(design)
     exact = cycles(design, table).work[0, 0] * design.linkage.cadence / (2 * math.pi)
     assert abs(by_hand.power() / exact - 1) < 2e-3, "not the same power"
-    batch = population(design, DESIGNS)
-    speeds = joint_speeds(design, table)
-    problem = Problem(design, table, load_limits(), speeds["knee"], speeds["hip"])
-    lengths = np.array([np.ravel(column) for column in pack_batch(batch)]).T
+    drawn = population(design, DESIGNS)
+    batch = with_lengths(design, drawn[..., None])
+    problem = Problem(design, table, load_limits(), joint_speeds(design, table))
     return rates(
         {
             f"ours, work of a turn from {TURN_POINTS} angles": (DESIGNS, lambda: cycles(batch, table)),
-            "ours, with all constraints": (DESIGNS, lambda: problem.evaluate(lengths)),
+            "ours, with all constraints": (DESIGNS, lambda: problem.evaluate(drawn.T)),
             f"pylinkage step_fast, kinematics of {TURN_POINTS} angles": (
                 DESIGNS,
                 lambda: step_fast(DESIGNS * TURN_POINTS),
@@ -128,28 +130,12 @@ def evaluations() -> dict[str, np.ndarray]:
     )
 
 
-def pack_batch(batch: Design) -> list[Any]:
-    """The nine lengths of a batch of designs."""
-    linkage = batch.linkage
-    return [
-        np.real(linkage.ground),
-        np.imag(linkage.ground),
-        linkage.crank,
-        linkage.foot,
-        np.real(linkage.pivot_to_crank),
-        np.imag(linkage.pivot_to_crank),
-        linkage.pedal_arm,
-        linkage.coupler,
-        linkage.rocker,
-    ]
-
-
 def simulated() -> dict[str, np.ndarray]:
     """Simulated turns of D1 with riders of different mass per second."""
     riders = [replace(load_design("d1"), rider=replace(load_design("d1").rider, mass=60.0 + i)) for i in range(TURNS)]
-    steps = steps_per_turn(riders[0].linkage.cadence)
+    steps = steps_per_turn(riders[0], riders[0].linkage.cadence)
     models = [build_mjcf(design, drawn=False).compile() for design in riders]
-    loop = compiled_loop(TorqueMap(MOMENTS), joint_drives(LEGS[1]))
+    loop = compiled_loop(torque_map(MOMENTS), joint_drives(ONE_LEG))
     full = mujoco.mjtState.mjSTATE_FULLPHYSICS
     states = np.empty((TURNS, mujoco.mj_stateSize(models[0], full)))
     control = np.zeros((TURNS, steps, models[0].nu))

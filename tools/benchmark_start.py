@@ -7,6 +7,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -48,7 +49,7 @@ def main() -> None:
     simulation = float(np.median(check) / np.median(bare))
     # importing mujoco imports numpy
     parts = ratio["import mujoco"] + simulation
-    report = {
+    report: dict[str, Any] = {
         "starts_of_a_bare_interpreter": ratio | {"the cross-check alone": simulation},
         "simulate_per_its_parts": ratio["fes_mj simulate d1"] / parts,
     }

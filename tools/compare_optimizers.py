@@ -10,20 +10,19 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from fes_mj.cli.output import json_text
+from fes_mj.cycles import WorkTable, joint_speeds
 from fes_mj.design_file import design_toml, load_design
-from fes_mj.files import write_text
+from fes_mj.files import json_text, write_text
+from fes_mj.moments import GROUPS, load_moments
 from fes_mj.optimization.confidence import gain, uncertain_table
-from fes_mj.optimization.cycles import WorkTable, joint_speeds
 from fes_mj.optimization.optimize import optimize
-from fes_mj.optimization.parallel import Workers
 from fes_mj.optimization.pareto import pareto_front
 from fes_mj.optimization.problem import Problem
 from fes_mj.optimization.problem_file import DEFAULT, load_limits
 from fes_mj.optimization.search import Result
 from fes_mj.optimization.winner import Winner, assess
+from fes_mj.parallel import Workers
 from fes_mj.provenance import provenance
-from fes_mj.torque import GROUPS, load_moments
 
 FOLDER = Path("results/optimization")
 SEEDS, BUDGET, WORKERS = 5, 50_000, Workers(jobs=2)
@@ -50,8 +49,8 @@ def problem(target: str, manufacturable: bool, caution: float = 0.0) -> Problem:
     limits = replace(load_limits(), gear_ratio_max=design.linkage.gear_ratio + 1e-9)
     if not manufacturable:
         limits = replace(limits, grashof_min=0.0)
-    speeds = joint_speeds(design, table)
-    task = Problem(design, table, limits, speeds["knee"] * (1 + 1e-9), speeds["hip"] * (1 + 1e-9))
+    speeds = joint_speeds(design, table).map(lambda speed: speed * (1 + 1e-9))
+    task = Problem(design, table, limits, speeds)
     paper = replace(task, limits=replace(limits, grashof_min=0.0))
     return replace(task, caution=caution, baseline=paper.evaluate(task.variables(design)[None]).power[0])
 
@@ -153,12 +152,12 @@ def markdown(rows: list[Row], won: dict[str, dict[float, Winner]], without: dict
     ]
     for target, found in won.items():
         for caution, winner in found.items():
-            check, won_by = winner.check, winner.gain
+            case, won_by = winner.case, winner.gain
             assert won_by is not None
             lines.append(
-                f"| {target} | {caution:.0f} | {check.static.power_mean:.2f} | "
+                f"| {target} | {caution:.0f} | {case.static.power_mean:.2f} | "
                 f"{won_by.mean:+.2f} ± {won_by.deviation:.2f} | "
-                f"{check.simulation.power_mean:.2f} | {'yes' if check.agrees else 'NO'} | {winner.reversals['knee']} | "
+                f"{case.simulation.power_mean:.2f} | {'yes' if case.agrees else 'NO'} | {winner.reversals.knee} | "
                 f"{100 * winner.manufacturing.turning:.1f} % | {100 * winner.rider.turning:.1f} % |"
             )
     lines += ["", "# What bounds the power", ""]
@@ -200,13 +199,13 @@ def write(
             {
                 "target": target,
                 "caution": caution,
-                "power_mean_W": winner.check.static.power_mean,
+                "power_mean_W": winner.case.static.power_mean,
                 "gain_W": winner.gain.mean if winner.gain else None,
                 "gain_deviation_W": winner.gain.deviation if winner.gain else None,
-                "simulated_power_mean_W": winner.check.simulation.power_mean,
-                "timestep_s": winner.check.simulation.timestep,
-                "agrees": winner.check.agrees,
-                "reversals": winner.reversals,
+                "simulated_power_mean_W": winner.case.simulation.power_mean,
+                "timestep_s": winner.case.simulation.timestep,
+                "agrees": winner.case.agrees,
+                "reversals": dict(winner.reversals.items()),
                 "manufacturing": winner.manufacturing._asdict(),
                 "rider": winner.rider._asdict(),
             }

@@ -67,7 +67,7 @@ def runs(rows: list[dict[str, Any]]) -> Iterator[Table]:
     terms = [row["energy_J"] for row in rows]
     cells = [(term, *(each[term] for each in terms)) for term in terms[0]]
     yield Table("Energy over a turn, J", {"term": "", **dict.fromkeys(names, ".5f")}, cells)
-    orders = ("gap_order", "energy_order", "softness_order", "extrapolated_work_error", "power_uncertainty")
+    orders = ("gap_order", "power_order", "softness_order", "extrapolated_work_error", "power_uncertainty")
     cells = [(key.replace("_", " "), *(row["refinement"][key] for row in rows)) for key in orders]
     yield Table("Refinement", {"": "", **dict.fromkeys(names, ".3g")}, cells)
 

@@ -58,7 +58,7 @@ def pareto_front(
     from pymoo.core.problem import Problem as Vectorized
     from pymoo.optimize import minimize
 
-    class Population(Vectorized):
+    class Population(Vectorized):  # type: ignore[misc]
         def __init__(self) -> None:
             low, high = problem.limits.search[: len(LENGTHS)].T
             objectives = problem.table.sets + smooth

@@ -235,6 +235,6 @@ def make_problem(
     other, table = load_design(compared_with), uncertain_table(moments) if caution else WorkTable.of(moments)
     # a hair above, so that the design itself is within its own limits
     own, given = joint_speeds(other, table).map(lambda speed: speed * (1 + 1e-9)), PerJoint(knee_speed, hip_speed)
-    speed = PerJoint.of(lambda joint: own[joint] if given[joint] is None else given[joint])
+    speed = PerJoint(*(mine if asked is None else asked for mine, asked in zip(own, given, strict=True)))
     baseline = cycles(other, table).work[0] * other.linkage.cadence / (2 * math.pi)
     return Problem(template, table, load_limits(limits), speed, caution, baseline)

@@ -75,7 +75,7 @@ def _polygon(space: Section) -> ComplexArray:
     points = value if isinstance(value, list) else [None]
     if not all(isinstance(point, list) and len(point) == 2 and all(map(is_number, point)) for point in points):
         space.refuse("polygon", value, "a list of vertices [x, y] in metres")
-    vertices = np.array([complex(*point) for point in points])
+    vertices = np.array([complex(x, y) for x, y in value])
     area = abs(np.sum((np.conj(vertices) * np.roll(vertices, -1)).imag)) / 2
     if len(vertices) < 3 or not 1e-6 <= area < np.inf:
         raise InputError(

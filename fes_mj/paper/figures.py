@@ -9,7 +9,6 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from fes_mj.arrays import FloatArray
 from fes_mj.joints import JOINTS
 from fes_mj.kinematics import solve
 from fes_mj.moments import GROUPS

@@ -9,8 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fes_mj.design_file import load_design
 from fes_mj.arrays import FloatArray
+from fes_mj.design_file import load_design
 from fes_mj.errors import AssemblyError
 from fes_mj.geometry import grashof_margin, joint_ranges, require_assembly
 from fes_mj.paper.identification import COUPLER_ANGLE, SEAT_ANGLE, identify, range_misfit

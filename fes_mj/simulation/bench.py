@@ -138,7 +138,7 @@ def simulate(
     )
     if edit:
         edit(spec)
-    model, steps = spec.compile(), round(turns * steps_per_turn(design, cadence, timestep))
+    model, steps = spec.compile(), round(turns * steps_per_turn(design, cadence, timestep, turns))
     drives = joint_drives(LEGS[legs])
     run = run_loop(model, make_loop(torque, drives), steps, pre_roll)
     return Simulation(
@@ -158,23 +158,25 @@ def _measured(model: mujoco.MjModel, run: Run, torque: TorqueMap, drives: dict[s
     """The measured fields of Simulation, out of the records of a run."""
     rows, loops = Sensors(model, run.sensors), [model.equality(i).name for i in range(model.neq)]
     forces, closed = run.fields["efc_force"], [loop for loop in loops if model.equality(loop).active0]
-    angle = {name: rows[f"{name}_angle"][:-1] for name in rows.joints}
-    speed = {name: rows[f"{name}_speed"] for name in rows.joints}
-    moment = {name: torque.moment(joint, angle[name], speed[name][:-1]) for name, joint in drives.items()}
-    crank_moment = rows.crank_moment()[:-1]
+    angle = {name: rows[f"{name}_angle"][1:-1] for name in rows.joints}
+    speed = {name: rows.speed(name) for name in rows.joints}
+    # what the feedback took for the speed, before the step
+    ahead = {name: 1.5 * rows[f"{name}_speed"][1:-1] - 0.5 * rows[f"{name}_speed"][:-2] for name in drives}
+    moment = {name: torque.moment(joint, angle[name], ahead[name]) for name, joint in drives.items()}
+    crank_moment = rows.crank_moment()[1:-1]
 
     def work(of: FloatArray, at: FloatArray) -> float:
-        """A moment that is held over each step, times the angle of the step."""
-        return float(of @ (at[:-1] + at[1:])) / 2 * float(model.opt.timestep)
+        """Of a moment at speeds: the trapezium rule over whole turns."""
+        return float(of @ at) * float(model.opt.timestep)
 
     return {
         "crank_angle": angle["crank"],
-        "crank_speed": speed["crank"][:-1],
+        "crank_speed": speed["crank"],
         "crank_moment": crank_moment,
         "joint_angle": angle,
-        "joint_speed": {name: values[:-1] for name, values in speed.items()},
+        "joint_speed": speed,
         "joint_moment": moment,
-        "loop_gap": {loop: np.linalg.norm(rows.vector(f"{loop}_gap")[:-1], axis=1) for loop in loops},
+        "loop_gap": {loop: np.linalg.norm(rows.vector(f"{loop}_gap")[1:-1], axis=1) for loop in loops},
         "loop_force": {loop: forces[:, 3 * i] + 1j * forces[:, 3 * i + 2] for i, loop in enumerate(closed)},
         "energy": Energy(
             joint_work=sum(work(moment[name], speed[name]) for name in drives),

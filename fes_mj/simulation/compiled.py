@@ -32,12 +32,15 @@ def compiled_loop(torque: TorqueMap, drives: dict[str, str]) -> Loop:
 
     def loop(model: mujoco.MjModel, data: mujoco.MjData, count: int) -> tuple[FloatArray, Records]:
         addresses = np.array([drive_addresses(model, name) for name in drives])
+        acceleration = data.qacc.copy()  # of the step before, which the next one needs
         mujoco.mj_forward(model, data)  # makes the constraints, whose number and place in memory then stay
+        data.qacc[:] = acceleration
         forces = data.efc_force
         sensor_rows = np.empty((count + 1, model.nsensordata))
         force_rows = np.empty((-(-count // FORCE_EVERY), len(forces)))
-        state = (data.qpos, data.qvel, data.ctrl, data.sensordata, forces)
-        advance(model._address, data._address, addresses, kinds, *maps, *state, sensor_rows, force_rows)
+        memory = (model.opt.timestep / 2, model._address, data._address, addresses, kinds, *maps)
+        state = (data.qpos, data.qvel, data.qacc, data.qfrc_bias, data.ctrl, data.sensordata, forces)
+        advance(*memory, *state, sensor_rows, force_rows)
         if data.efc_force.ctypes.data != forces.ctypes.data:
             raise AssertionError("MuJoCo moved its constraint forces during a run")
         return sensor_rows, {"efc_force": force_rows}
@@ -48,8 +51,11 @@ def compiled_loop(torque: TorqueMap, drives: dict[str, str]) -> Loop:
 @cache
 def _advance() -> Callable[..., None]:
     njit: Any = require_extra("optimize", "numba").njit
-    step = ctypes.CDLL(str(_library())).mj_step
-    step.argtypes, step.restype = (ctypes.c_ssize_t, ctypes.c_ssize_t), None
+    library, address = ctypes.CDLL(str(_library())), ctypes.c_ssize_t
+    first, second, velocities, bias_force = library.mj_step1, library.mj_step2, library.mj_comVel, library.mj_rne
+    for function in (first, second, velocities, bias_force):
+        function.argtypes, function.restype = (address, address), None
+    bias_force.argtypes = (address, address, ctypes.c_int, address)
 
     @njit  # type: ignore[untyped-decorator]
     def acos(value: float) -> float:
@@ -59,6 +65,7 @@ def _advance() -> Callable[..., None]:
 
     @njit(nogil=True)  # type: ignore[untyped-decorator]
     def advance(
+        half: float,
         model: int,
         data: int,
         addresses: Any,
@@ -69,20 +76,30 @@ def _advance() -> Callable[..., None]:
         hip_table: Any,
         qpos: Any,
         qvel: Any,
+        acceleration: Any,
+        bias: Any,
         ctrl: Any,
         sensors: Any,
         forces: Any,
         sensor_rows: Any,
         force_rows: Any,
     ) -> None:
+        held, lead = np.empty(len(qvel)), np.empty(len(qvel))
         for row in range(len(sensor_rows) - 1):
+            lead[:] = qvel + half * acceleration  # as in stepping.recording_loop
             for drive in range(len(kinds)):
                 actuator, position, speed = addresses[drive]
                 if kinds[drive] == 0:
-                    ctrl[actuator] = knee_map(knee_where, knee_table, qpos[position], qvel[speed])
+                    ctrl[actuator] = knee_map(knee_where, knee_table, qpos[position], lead[speed])
                 else:
-                    ctrl[actuator] = hip_map(hip_where, hip_table, qpos[position], qvel[speed])
-            step(model, data)
+                    ctrl[actuator] = hip_map(hip_where, hip_table, qpos[position], lead[speed])
+            first(model, data)
+            held[:] = qvel
+            qvel[:] = lead
+            velocities(model, data)
+            bias_force(model, data, 0, bias.ctypes.data)
+            qvel[:] = held
+            second(model, data)
             sensor_rows[row] = sensors
             if not row % FORCE_EVERY:
                 force_rows[row // FORCE_EVERY] = forces

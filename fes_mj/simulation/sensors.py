@@ -24,6 +24,11 @@ class Sensors:
         start = self._column[name]
         return self._rows[:, start : start + 3]
 
+    def speed(self, joint: str) -> FloatArray:
+        """Speed of a joint at the time of its angle, rad/s, shape (rows - 2,): MuJoCo's lag by half a step."""
+        lagging = self[f"{joint}_speed"]
+        return (lagging[1:-1] + lagging[2:]) / 2
+
     def crank_moment(self) -> FloatArray:
         """Moment on the load, N m, shape (rows,): the frame brakes the crank about +y, against its turning about -y."""
         return self.vector("crank_torque")[:, 1]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from copy import copy
 from typing import Any, NamedTuple, TypeAlias
 
 import mujoco
@@ -15,10 +16,13 @@ from fes_mj.torque_map import TorqueMap
 # An exact pose with exact velocities still rings for some six steps, while the stiff loops find their forces.
 PRE_ROLL = 20  # steps
 FORCE_EVERY = 8  # steps; reading the constraint forces costs a tenth of a step
+# MuJoCo softens a constraint by a ten-thousandth of its bodies' inverse weights: too much for a loop near its dead
+# centre, which is as soft in one direction by itself. A hundredth of this factor changes nothing.
+LOOP_SOFTNESS = 1e-4
 
 
 class Run(NamedTuple):
-    """Records of a run: sensor rows of all steps and one more, energies (J), recorded fields (rows, size) by name."""
+    """Sensor rows of all steps, one before and one after, energies (J), recorded fields (rows, size) by name."""
 
     sensors: FloatArray
     start_energy: tuple[float, float]  # potential, kinetic
@@ -50,23 +54,35 @@ def recording_loop(
 
     def loop(model: mujoco.MjModel, data: mujoco.MjData, count: int) -> tuple[FloatArray, Records]:
         # plain floats through memory views and rows as bytes cost half of numpy scalars and row assignment
-        qpos, qvel = memoryview(data.qpos), memoryview(data.qvel)
+        qvel, acceleration, lead, held = data.qvel, data.qacc, np.empty(model.nv), np.empty(model.nv)
+        position_of, speed_of = memoryview(data.qpos), memoryview(lead.data)
         ctrl: Any = memoryview(data.ctrl)
         drives = [(*drive_addresses(model, name), moment) for name, moment in feedback.items()]
-        step, read = mujoco.mj_step, data.sensordata.tobytes
+        first, second, read, half = mujoco.mj_step1, mujoco.mj_step2, data.sensordata.tobytes, model.opt.timestep / 2
+        velocities, bias_force, bias = mujoco.mj_comVel, mujoco.mj_rne, data.qfrc_bias
         width, place = data.sensordata.nbytes, 0
         sensors = bytearray((count + 1) * width)
         fields: dict[str, list[bytes]] = {name: [] for name in record}
         for number in range(count):
+            # MuJoCo's speeds lag its positions by half a step: with those at the positions' own time, moments and
+            # centrifugal forces are of second order
+            np.multiply(acceleration, half, out=lead)
+            np.add(lead, qvel, out=lead)
             for actuator, position, speed, moment in drives:
-                ctrl[actuator] = moment(qpos[position], qvel[speed])
-            step(model, data)
+                ctrl[actuator] = moment(position_of[position], speed_of[speed])
+            first(model, data)
+            held[:] = qvel
+            qvel[:] = lead
+            velocities(model, data)
+            bias_force(model, data, 0, bias)
+            qvel[:] = held
+            second(model, data)
             sensors[place : place + width] = read()
             place += width
             if not number % every:
                 for name, rows in fields.items():
                     rows.append(getattr(data, name).tobytes())
-        records = {name: np.frombuffer(b"".join(rows)).reshape(len(rows), -1) for name, rows in fields.items()}
+        records: Records = {name: np.frombuffer(b"".join(rows)).reshape(len(rows), -1) for name, rows in fields.items()}
         return np.frombuffer(sensors).reshape(count + 1, -1), records
 
     return loop
@@ -80,12 +96,14 @@ def drive_addresses(model: mujoco.MjModel, name: str) -> tuple[int, int, int]:
 
 def run_loop(model: mujoco.MjModel, loop: Loop, steps: int, pre_roll: int = PRE_ROLL) -> Run:
     """Pre-roll from the keyframe, then record so many steps of `loop`. Raises UnstableError."""
+    model = copy(model)
+    model.body_invweight0[:] *= LOOP_SOFTNESS
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, 0)
     previous = mujoco.get_mju_user_warning()
     mujoco.set_mju_user_warning(lambda _: None)  # MuJoCo would write MUJOCO_LOG.TXT into the user's folder
     try:
-        loop(model, data, pre_roll)
+        before, _ = loop(model, data, pre_roll)
         start = _energy(model, data)
         sensors, fields = loop(model, data, steps)
         if any(warning.number for warning in data.warning):
@@ -98,7 +116,7 @@ def run_loop(model: mujoco.MjModel, loop: Loop, steps: int, pre_roll: int = PRE_
     finally:
         mujoco.set_mju_user_warning(previous)
     sensors[-1] = data.sensordata
-    return Run(sensors, start, end, fields)
+    return Run(np.vstack([before[-2:-1], sensors]), start, end, fields)
 
 
 def _energy(model: mujoco.MjModel, data: mujoco.MjData) -> tuple[float, float]:

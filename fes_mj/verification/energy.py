@@ -61,9 +61,9 @@ def audit(case: Case) -> Audit:
     forces = ("ctrl", "qfrc_constraint", "qfrc_passive", "actuator_force")
     run = run_loop(model, recording_loop(feedback, forces, every=1), steps)
     rows = Sensors(model, run.sensors)
-    speed = np.column_stack([rows[f"{joint}_speed"] for joint in rows.joints])
-    travel = (speed[:-1] + speed[1:]) / 2 * model.opt.timestep  # of every joint in every step, rad
-    crank, crank_moment = model.joint("crank").dofadr[0], rows.crank_moment()[:-1]
+    # of every joint in every step, rad
+    travel = np.column_stack([rows.speed(joint) for joint in rows.joints]) * model.opt.timestep
+    crank, crank_moment = model.joint("crank").dofadr[0], rows.crank_moment()[1:-1]
     motors = {model.joint(name).dofadr[0]: run.fields["ctrl"][:, model.actuator(name).id] for name in drives}
 
     def work(force: FloatArray) -> float:
@@ -76,7 +76,7 @@ def audit(case: Case) -> Audit:
         potential=run.end_energy[0] - run.start_energy[0],
         damping=-work(run.fields["qfrc_passive"]),
         constraint_work=work(run.fields["qfrc_constraint"]),
-        crank_angle=rows["crank_angle"][: steps - 1],
+        crank_angle=rows["crank_angle"][1:-2],
         crank_moment=crank_moment[: steps - 1],
         # the servo of the `discrete` integrator acts one step after the state that the sensors show
         servo_moment=-run.fields["actuator_force"][1:, model.actuator(SERVO).id],

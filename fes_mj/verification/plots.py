@@ -33,7 +33,8 @@ def refinement_curve(name: str, refinement: Refinement) -> str:
     with mpl.rc_context(READABLE):
         figure, axes = _axes("time step, ms", "relative error, or gap in m")
         _line(axes, steps, "gap", f"loop gap, order {refinement.gap_order:.2f}")
-        _line(axes, steps, "lost", f"energy lost, order {refinement.energy_order:.2f}")
+        _line(axes, steps, "power_rms", f"crank power, W rms, order {refinement.power_order:.2f}")
+        _line(axes, steps, "lost", "energy lost")
         _line(axes, steps, "work_error", "work per turn, against statics")
         axes.set_xscale("log", base=2)
         axes.set_xticks([1e3 * level.timestep for level in steps], [f"{1e3 * level.timestep:.3f}" for level in steps])

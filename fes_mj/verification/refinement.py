@@ -26,7 +26,8 @@ SAFETY = 1.25  # Roache's factor for three grids
 
 @dataclass(frozen=True)
 class Level:
-    """One run: time step and loop time constant (s), loop gap (m), energy lost and error of the work a turn, relative.
+    """One run: time step and loop time constant (s), loop gap (m), rms error of the crank power (W), energy lost and
+    error of the work a turn, both relative.
 
     Relative is to the work of a turn, as Case.power_scale has it. The work is the crank's over one exact turn,
     what is stored at its ends given back.
@@ -35,6 +36,7 @@ class Level:
     timestep: float
     loop_time: float
     gap: float
+    power_rms: float
     lost: float
     work_error: float
 
@@ -54,9 +56,9 @@ class Refinement:
         return observed_order([level.timestep for level in self.steps], [level.gap for level in self.steps])
 
     @property
-    def energy_order(self) -> float:
-        """Observed order of the lost energy in the time step."""
-        return observed_order([level.timestep for level in self.steps], [level.lost for level in self.steps])
+    def power_order(self) -> float:
+        """Observed order of the instantaneous crank power's error in the time step."""
+        return observed_order([level.timestep for level in self.steps], [level.power_rms for level in self.steps])
 
     @property
     def softness_order(self) -> float:
@@ -70,9 +72,9 @@ class Refinement:
 
     @property
     def extrapolated(self) -> float:
-        """Error of the work a turn at a time step of zero, by Richardson's extrapolation at first order, relative."""
+        """Error of the work a turn at a time step of zero, by Richardson's extrapolation at second order, relative."""
         middle, fine = (level.work_error for level in self.steps[-2:])
-        return 2 * fine - middle
+        return (4 * fine - middle) / 3
 
     @property
     def uncertainty(self) -> float:
@@ -85,7 +87,7 @@ class Refinement:
             "steps": [asdict(level) for level in self.steps],
             "softness": [asdict(level) for level in (*self.softness, self.recommended, self.stiffer)],
             "gap_order": self.gap_order,
-            "energy_order": self.energy_order,
+            "power_order": self.power_order,
             "softness_order": self.softness_order,
             "extrapolated_work_error": self.extrapolated,
             "power_uncertainty": self.uncertainty,
@@ -107,7 +109,7 @@ def refine(case: Case) -> Refinement:
 
     def level(run: Simulation, loop_time: float) -> Level:
         lost, error = run.energy.lost / scale, (_work(case, run) - exact) / scale
-        return Level(run.timestep, loop_time, run.loop_gap_max, lost, error)
+        return Level(run.timestep, loop_time, run.loop_gap_max, case.rms_per_leg(run), lost, error)
 
     def again(factor: int, loop_time: float) -> Level:
         timestep, solref = 2 * math.pi / case.cadence / (factor * count), (loop_time, LOOP_SOLREF[1])

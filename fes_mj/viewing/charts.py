@@ -63,7 +63,7 @@ def plot_power(axes: Axes, case: Case, names: Sequence[str] = ("reference", "muj
 
 
 def draw_linkage(axes: Axes, design: Design, crank_angle: float, paths: Sequence[str] = ("pedal", "knee")) -> None:
-    """Leg and linkage to scale at a crank angle (rad), and the paths of some joints over the turn; riders face right."""
+    """Leg and linkage to scale at a crank angle (rad), and the paths of joints over the turn; riders face right."""
     turn = positions(design, np.append(FULL_TURN, 2 * np.pi))
     for name in (name for name in paths if name in turn):
         axes.plot(turn[name].real, turn[name].imag, color="0.65", lw=0.8, ls=(0, (4, 2)))

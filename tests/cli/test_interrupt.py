@@ -44,7 +44,7 @@ def test_an_interrupted_run_leaves_earlier_results(how: signal.Signals, tmp_path
     _run("simulate", "d1", "--out", str(tmp_path))
     before = _contents(tmp_path)
     assert len(before) == 3
-    code, errors = _stop(how, "simulate", "d1", "--turns", "1000", "--out", str(tmp_path))
+    code, errors = _stop(how, "simulate", "d1", "--turns", "300", "--out", str(tmp_path))
     assert _contents(tmp_path) == before
     if how is signal.SIGINT:
         assert code in INTERRUPTED

@@ -8,7 +8,6 @@ import fes_mj
 from fes_mj.kinematics import solve
 from fes_mj.segments import inertias
 from fes_mj.simulation.mjcf import build_mjcf
-from fes_mj.time_step import steps_per_turn
 
 
 @pytest.mark.parametrize("anchors", ["sites", "bodies"])
@@ -62,10 +61,3 @@ def test_drives_do_the_work_of_virtual_work(design: fes_mj.Design) -> None:
         servo = data.actuator("crank_servo").force[0]
         expected[model.joint("crank").dofadr[0]] = servo
         assert data.qfrc_actuator == pytest.approx(expected)
-
-
-def test_a_turn_is_a_whole_number_of_steps() -> None:
-    for cadence in (1.0, 6.3, 10.09, 30.0):
-        assert 2 * np.pi / cadence / steps_per_turn(cadence) <= 0.25e-3 * 1.001
-    assert steps_per_turn(31.0) == pytest.approx(8 * steps_per_turn(15.5), rel=1e-3)
-    assert steps_per_turn(10.0, 1e-3) == round(2 * np.pi / 10 / 1e-3)

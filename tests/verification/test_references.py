@@ -9,6 +9,7 @@ from fes_mj.kinematics import Rotation
 from fes_mj.verification.case import VerificationCase
 from fes_mj.verification.geometry import fourier_derivative, rate_errors
 from fes_mj.verification.references import differences, exact_curves
+from fes_mj.verification.suite import servo_rounding
 
 
 def _case(design: fes_mj.Design, moments: fes_mj.JointMoments) -> VerificationCase:
@@ -32,10 +33,10 @@ def test_measured_methods_agree_with_the_exact_ones(design: fes_mj.Design, smoot
     curves = case.curves
     assert set(curves["massive"]) == {"equilibrium", "inverse dynamics", "mj_inverse", "torque sensor", "servo"}
     between = differences(curves["massive"])
-    assert between["torque sensor", "servo"] < 1e-8
+    assert between["torque sensor", "servo"] < 2 * servo_rounding(case.cadence)
     scale = np.abs(curves["massive"]["mj_inverse"]).max()
     power = (curves["massive"]["torque sensor"] - curves["massive"]["mj_inverse"]) * case.cadence
-    assert np.sqrt(np.mean(power**2)) < 0.1
+    assert np.sqrt(np.mean(power**2)) < 0.01
     assert scale > 5
 
 

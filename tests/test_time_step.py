@@ -1,0 +1,77 @@
+"""The step is chosen beforehand: what is predicted is what is measured, and what cannot be run is refused."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import fes_mj
+from fes_mj.crosscheck import cross_check
+from fes_mj.step_error import predicted_errors
+from fes_mj.time_step import FEWEST_STEPS, MOST_STEPS, steps_per_turn
+from fes_mj.units import RPM
+
+
+@pytest.mark.parametrize("name", ["trt", "r2", "d1", "d2"])
+@pytest.mark.parametrize("steps", [720, 1440])
+def test_the_predicted_error_is_the_measured_one(name: str, steps: int) -> None:
+    """Power curve and loop gap, from the closed form and from MuJoCo, of legs that hang: it knows no joint moments."""
+    design, still = fes_mj.load_design(name), np.zeros(2)
+    cadence = design.linkage.cadence
+    idle = fes_mj.JointMoments("idle", np.array([0.0, 3.0]), still, still)
+    case = cross_check(design, idle, timestep=2 * math.pi / cadence / steps)
+    predicted = predicted_errors(design, cadence, 2 * math.pi / steps)
+    assert len(case.simulation.crank_angle) == steps
+    assert case.rms_per_leg(case.simulation) == pytest.approx(predicted.inverse_dynamics, rel=0.02)
+    assert case.simulation.loop_gap_max == pytest.approx(predicted.loop_gap, rel=0.02)
+
+
+def test_errors_are_of_second_order() -> None:
+    coarse, fine = (predicted_errors(fes_mj.load_design("d1"), 10.0, 2 * np.pi / n) for n in (4000, 8000))
+    assert np.divide(coarse, fine) == pytest.approx(4, rel=0.01)
+
+
+def test_the_step_follows_the_sharpness_of_the_motion() -> None:
+    d2 = fes_mj.load_design("d2")
+    assert steps_per_turn(d2, 10 * RPM) == FEWEST_STEPS
+    assert steps_per_turn(d2, 200 * RPM) > FEWEST_STEPS
+    sharp = fes_mj.load_design("trt")  # the leg comes within a millimetre of stretching
+    reach = sharp.rider.thigh + float(sharp.knee_to_pedal)
+    far = abs(sharp.linkage.crank_centre) + sharp.linkage.crank
+    stretched = replace(sharp, linkage=replace(sharp.linkage, ground=sharp.linkage.ground * (reach - 1e-3) / far))
+    assert steps_per_turn(stretched, 60 * RPM) == FEWEST_STEPS
+    closer = replace(sharp, linkage=replace(sharp.linkage, crank=reach - 1e-5 - abs(sharp.linkage.crank_centre)))
+    assert steps_per_turn(closer, 60 * RPM) > 2 * FEWEST_STEPS
+
+
+def test_a_step_that_is_asked_for_is_a_whole_number_of_a_turn() -> None:
+    assert steps_per_turn(fes_mj.load_design("d1"), 10.0, 1e-3) == round(2 * np.pi / 10 / 1e-3)
+
+
+def test_what_does_not_fit_into_memory_is_refused_with_a_way_out() -> None:
+    d1 = fes_mj.load_design("d1")
+    most = MOST_STEPS // FEWEST_STEPS
+    assert steps_per_turn(d1, 10.0, turns=most) == FEWEST_STEPS
+    with pytest.raises(fes_mj.InputError, match=f"needs {most + 1} x 2,880 time steps, .*; give at most {most} turns"):
+        steps_per_turn(d1, 10.0, turns=most + 1)
+    with pytest.raises(fes_mj.InputError, match="give fewer turns or a longer --timestep"):
+        steps_per_turn(d1, 10.0, 1e-7)
+
+
+def test_what_moves_too_sharply_is_refused_before_it_runs() -> None:
+    trt = fes_mj.load_design("trt")
+    crank = trt.rider.thigh + float(trt.knee_to_pedal) - abs(trt.linkage.crank_centre) - 5e-7
+    edge = replace(trt, name="edge", linkage=replace(trt.linkage, crank=crank))
+    with pytest.raises(fes_mj.InputError, match="edge: at 200 rpm the run needs .*slower --cadence"):
+        steps_per_turn(edge, 200 * RPM)
+
+
+def test_the_near_edge_of_closing_agrees() -> None:
+    """A leg that comes within 0.5 mm of stretching at 150 rpm, moments that follow a thorny curve."""
+    trt, angle = fes_mj.load_design("trt"), np.radians(np.arange(0, 360, 0.25))
+    crank = trt.rider.thigh + float(trt.knee_to_pedal) - abs(trt.linkage.crank_centre) - 5e-4
+    edge = replace(trt, linkage=replace(trt.linkage, crank=crank))
+    moments = fes_mj.JointMoments("thorny", angle, 12 * np.cos(angle) + 3 * np.sin(7 * angle), 6 * np.sin(angle))
+    case = cross_check(edge, moments, cadence=150 * RPM)
+    assert case.agrees, [check for check in case.checks if not check.ok]
