@@ -117,8 +117,7 @@ def fronts() -> dict[str, Any]:
     for kind, template in (("crt", "r1"), ("cdt", "d1")):
         moments = tuple(load_moments(group) for group in GROUPS)
         table = WorkTable.of(*moments)
-        speeds = joint_speeds(trt, table)
-        task = Problem(load_design(template), table, load_limits(), speeds["knee"], speeds["hip"])
+        task = Problem(load_design(template), table, load_limits(), joint_speeds(trt, table))
         front = pareto_front(task, moments, BUDGET, seed=1)
         result[kind] = {"evaluations": front.evaluations, "power_W": front.power.tolist(), "x": front.x.tolist()}
     return result
@@ -182,9 +181,7 @@ def unbounded() -> dict[str, str]:
     return notes
 
 
-def write(
-    rows: list[Row], won: dict[str, dict[float, Winner]], bounds: dict[str, str], trade_off: Any, seconds: float
-) -> None:
+def write(rows: list[Row], won: dict[str, dict[float, Winner]], bounds: dict[str, str], trade_off: Any) -> None:
     """Table, numbers and design files of what is there so far."""
     for found in won.values():
         for winner in found.values():
@@ -193,7 +190,6 @@ def write(
     write_text(FOLDER / "comparison.md", markdown(rows, won, bounds))
     content = {
         "provenance": provenance([DEFAULT]),
-        "seconds": seconds,
         "methods": [row._asdict() for row in rows],
         "winners": [
             {
@@ -228,7 +224,7 @@ def main() -> None:
     for target in TARGETS:
         rows += compare(target)
         won[target] = winners(target)
-        write(rows, won, bounds, trade_off, time.perf_counter() - started)
+        write(rows, won, bounds, trade_off)
         print(f"{target}: {time.perf_counter() - started:.0f} s", flush=True)
     print((FOLDER / "comparison.md").read_text())
 

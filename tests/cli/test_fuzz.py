@@ -182,8 +182,8 @@ def test_broken_study_and_problem_files(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    assert _fuzz_files(STUDY, EXAMPLES / "study.toml", 6, 200, tmp_path, capsys) == 200
-    assert _fuzz_files(PROBLEM, DATA / "optimization.toml", 7, 200, tmp_path, capsys) == 200
+    assert _fuzz_files(STUDY, EXAMPLES / "study.toml", 6, 60, tmp_path, capsys) == 60
+    assert _fuzz_files(PROBLEM, DATA / "optimization.toml", 7, 60, tmp_path, capsys) == 60
 
 
 def test_broken_flags(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:

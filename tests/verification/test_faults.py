@@ -51,6 +51,7 @@ def test_the_guard_notices(fault: Fault, case: VerificationCase, baseline: dict[
     assert detection.first.factor > 1
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("source", ["trt", "r1", str(ROOT / "results" / "optimization" / "r2-caution-1.toml")])
 def test_any_design_can_be_used(source: str) -> None:
     case = _case(source)
