@@ -16,5 +16,5 @@ for millimetres, power in powers.items():
     print(f"{millimetres} mm: {power:.2f} W")
 
 best = max(powers, key=powers.__getitem__)
-result = fes_mj.cross_check(replace(design, linkage=replace(design.linkage, crank=best / 1000)), moments)
+result = fes_mj.Case(replace(design, linkage=replace(design.linkage, crank=best / 1000)), moments)
 print(f"best: {best} mm, {result.simulation.power_mean:.2f} W in the simulation, agrees: {result.agrees}")

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from fes_mj.crosscheck import Case as Case
-    from fes_mj.crosscheck import cross_check as cross_check
     from fes_mj.design import Design as Design
     from fes_mj.design import Linkage as Linkage
     from fes_mj.design import Rider as Rider
@@ -22,7 +21,7 @@ if TYPE_CHECKING:
 
 # Imported when first used: help needs no numpy, statics no MuJoCo.
 _PUBLIC = {
-    "crosscheck": ("Case", "cross_check"),
+    "crosscheck": ("Case",),
     "design": ("Design", "Linkage", "Rider"),
     "design_file": ("load_design",),
     "errors": ("AssemblyError", "InputError"),

@@ -222,18 +222,3 @@ class Case:
                 **{f"{name}_gap_m": gap for name, gap in run.loop_gap.items()},
             }
         )
-
-
-def cross_check(
-    design: Design,
-    moments: JointMoments,
-    *,
-    cadence: float | None = None,
-    timestep: float | None = None,
-    turns: int = 1,
-    legs: int = 1,
-) -> Case:
-    """Simulate with full masses and nearly without, solve statics, compare (arguments as `simulate`)."""
-    case = Case(design, moments, cadence or 0.0, timestep, turns, legs)
-    _ = case.checks
-    return case

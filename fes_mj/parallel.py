@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import AbstractContextManager, nullcontext
+from contextlib import AbstractContextManager, ExitStack
 from typing import Any, NamedTuple, TypeVar
 
 from fes_mj.errors import InputError, UnstableError, require_extra
@@ -64,16 +64,7 @@ def _backend(joblib: Any, workers: Workers) -> AbstractContextManager[Any]:
             f"--cluster {workers.cluster}: no Dask scheduler answers there ({type(error).__name__}); "
             "give the tcp://host:port that `dask scheduler` prints"
         ) from None
-    return _Connected(client, joblib.parallel_config(backend="dask", client=client))
-
-
-class _Connected(nullcontext[None]):
-    """A joblib configuration that closes its Dask client at the end."""
-
-    def __init__(self, client: Any, configuration: AbstractContextManager[Any]) -> None:
-        super().__init__()
-        self._client, self._configuration = client, configuration
-
-    def __exit__(self, *details: Any) -> None:
-        self._configuration.__exit__(*details)
-        self._client.close()
+    stack = ExitStack()  # the client is closed last
+    stack.callback(client.close)
+    stack.enter_context(joblib.parallel_config(backend="dask", client=client))
+    return stack

@@ -143,37 +143,28 @@ def quasi_static(
     """
     require_assembly(design)
     motion = kinematics.solve(design, np.linspace(0, 2 * np.pi, points, endpoint=False))
-    return balance(motion, torque_map(moments), design.linkage.cadence if cadence is None else cadence)
-
-
-def balance(motion: Motion, torque: TorqueMap, cadence: float) -> QuasiStatic:
-    """The massless turn of a motion over uniform crank angles under a torque map; cadence in rad/s."""
+    torque, cadence = torque_map(moments), cadence or design.linkage.cadence
     joint_moment = torque.along(motion, cadence)
     return QuasiStatic(motion, torque, cadence, joint_moment, *equilibrium(motion, joint_moment))
 
 
-def difference_sd(one: QuasiStatic, other: QuasiStatic) -> float | None:
-    """Standard deviation of one's mean power minus the other's, W; None where nothing is known of the moments' error.
+def difference_sd(one: QuasiStatic, other: QuasiStatic, factor: float = 1.0) -> float | None:
+    """Standard deviation of one's mean power less `factor` times the other's, W; None where no error is known.
 
     Both must have been solved with the same moments (InputError otherwise).
     """
-    return _combined_sd(one, other, 1.0)
+    covariance, theirs = one.moments.covariance, other.moments.covariance
+    if covariance is None or theirs is None:
+        return None
+    if covariance is not theirs and not np.array_equal(covariance, theirs):
+        raise InputError(f"{one.moments.name} and {other.moments.name} are different moments: nothing correlates them")
+    return standard_deviation(one.power_weights - factor * other.power_weights, covariance)
 
 
 def ratio_sd(one: QuasiStatic, other: QuasiStatic) -> float | None:
     """Standard deviation of one's mean power per the other's, to first order; otherwise as difference_sd."""
-    deviation = _combined_sd(one, other, one.power_mean / other.power_mean)
+    deviation = difference_sd(one, other, one.power_mean / other.power_mean)
     return None if deviation is None else deviation / abs(other.power_mean)
-
-
-def _combined_sd(one: QuasiStatic, other: QuasiStatic, factor: float) -> float | None:
-    """Standard deviation of one - factor * other."""
-    covariance = one.moments.covariance
-    if covariance is None or other.moments.covariance is None:
-        return None
-    if covariance is not other.moments.covariance and not np.array_equal(covariance, other.moments.covariance):
-        raise InputError(f"{one.moments.name} and {other.moments.name} are different moments: nothing correlates them")
-    return standard_deviation(one.power_weights - factor * other.power_weights, covariance)
 
 
 def virtual_work(

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import fes_mj
-from fes_mj.crosscheck import cross_check
+from fes_mj.crosscheck import Case
 from fes_mj.errors import UnstableError
 from fes_mj.simulation.stepping import FORCE_EVERY
 
@@ -16,7 +16,7 @@ def test_the_simulation_agrees_with_its_references(
     design: fes_mj.Design, moments: fes_mj.JointMoments, legs: int
 ) -> None:
     """Every limit of the issue, stated here again: a limit loosened in the code must not loosen the test."""
-    result = cross_check(design, moments, legs=legs)
+    result = Case(design, moments, legs=legs)
     values = {check.name: check.value for check in result.checks}
     assert values["mean_power"] <= 5e-4
     assert values["loop_gap"] <= 1e-5
@@ -67,7 +67,7 @@ def test_constraint_forces_are_the_reactions_of_the_massive_equilibrium(
 
 @pytest.mark.parametrize("rpm", [10, 40, 120, 200])
 def test_the_default_step_suits_every_cadence(design: fes_mj.Design, rpm: float) -> None:
-    result = cross_check(design, fes_mj.load_moments("p1p2"), cadence=rpm * np.pi / 30)
+    result = Case(design, fes_mj.load_moments("p1p2"), cadence=rpm * np.pi / 30)
     assert result.agrees, [check for check in result.checks if not check.ok]
 
 
@@ -75,21 +75,21 @@ def test_the_default_step_suits_every_cadence(design: fes_mj.Design, rpm: float)
 def test_moments_that_deliver_next_to_nothing_agree_too(design: fes_mj.Design, knee: list[float]) -> None:
     quarters = np.radians([0.0, 90.0, 180.0, 270.0])
     moments = fes_mj.JointMoments("idle", quarters, np.array(knee), np.zeros(4))
-    result = cross_check(design, moments)
+    result = Case(design, moments)
     assert abs(result.simulation.power_mean - result.static.power_mean) <= 5e-3  # W
     assert result.agrees
 
 
 def test_a_slack_servo_is_noticed(monkeypatch: pytest.MonkeyPatch, smooth_moments: fes_mj.JointMoments) -> None:
     monkeypatch.setattr("fes_mj.simulation.mjcf.SERVO_GAIN", 20.0)
-    result = cross_check(fes_mj.load_design("d1"), smooth_moments)
+    result = Case(fes_mj.load_design("d1"), smooth_moments)
     assert not result.agrees
     assert "cadence_ripple" in [check.name for check in result.checks if not check.ok]
 
 
 def test_soft_loops_are_noticed(monkeypatch: pytest.MonkeyPatch, smooth_moments: fes_mj.JointMoments) -> None:
     monkeypatch.setattr("fes_mj.simulation.mjcf.LOOP_SOLREF", (0.02, 1.0))
-    result = cross_check(fes_mj.load_design("d1"), smooth_moments)
+    result = Case(fes_mj.load_design("d1"), smooth_moments)
     assert {"mean_power", "loop_gap"} <= {check.name for check in result.checks if not check.ok}
 
 

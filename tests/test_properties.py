@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fes_mj import kinematics, load_design, load_moments, quasi_static
-from fes_mj.crosscheck import Case, cross_check
+from fes_mj.crosscheck import Case
 from fes_mj.design import Design, Linkage
 from fes_mj.design_file import design_toml
 from fes_mj.inverse_dynamics import body_loads, crank_moment
@@ -162,7 +162,7 @@ def test_a_moments_file_reads_back(
 @settings(max_examples=20)
 def test_dynamics_agree_with_statics(design: Design, moments: JointMoments) -> None:
     """At an unhurried 60 rpm: random linkages have parts that are faster than any designer would allow."""
-    result = cross_check(design, moments, cadence=2 * math.pi)
+    result = Case(design, moments, cadence=2 * math.pi)
     values = {each.name: each for each in result.checks}
     gross = np.abs(result.static.power).mean()  # the net power of random moments may be next to nothing
     assert abs(result.simulation.power_mean - result.static.power_mean) < 1e-3 * gross

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import fes_mj
-from fes_mj.crosscheck import cross_check
+from fes_mj.crosscheck import Case
 from fes_mj.step_error import predicted_errors
 from fes_mj.time_step import FEWEST_STEPS, MOST_STEPS, steps_per_turn
 from fes_mj.units import RPM
@@ -20,7 +20,7 @@ def test_the_predicted_error_is_the_measured_one(name: str, steps: int) -> None:
     design, still = fes_mj.load_design(name), np.zeros(2)
     cadence = design.linkage.cadence
     idle = fes_mj.JointMoments("idle", np.array([0.0, 3.0]), still, still)
-    case = cross_check(design, idle, timestep=2 * math.pi / cadence / steps)
+    case = Case(design, idle, timestep=2 * math.pi / cadence / steps)
     predicted = predicted_errors(design, cadence, 2 * math.pi / steps)
     assert len(case.simulation.crank_angle) == steps
     assert case.rms_per_leg(case.simulation) == pytest.approx(predicted.inverse_dynamics, rel=0.02)
@@ -63,7 +63,7 @@ def test_what_moves_too_sharply_is_refused_before_it_runs() -> None:
     trt = fes_mj.load_design("trt")
     crank = trt.rider.thigh + float(trt.knee_to_pedal) - abs(trt.linkage.crank_centre) - 5e-7
     edge = replace(trt, name="edge", linkage=replace(trt.linkage, crank=crank))
-    with pytest.raises(fes_mj.InputError, match="edge: at 200 rpm the run needs .*slower --cadence"):
+    with pytest.raises(fes_mj.InputError, match=r"edge: at 200 rpm the run needs .*slower --cadence"):
         steps_per_turn(edge, 200 * RPM)
 
 
@@ -73,5 +73,5 @@ def test_the_near_edge_of_closing_agrees() -> None:
     crank = trt.rider.thigh + float(trt.knee_to_pedal) - abs(trt.linkage.crank_centre) - 5e-4
     edge = replace(trt, linkage=replace(trt.linkage, crank=crank))
     moments = fes_mj.JointMoments("thorny", angle, 12 * np.cos(angle) + 3 * np.sin(7 * angle), 6 * np.sin(angle))
-    case = cross_check(edge, moments, cadence=150 * RPM)
+    case = Case(edge, moments, cadence=150 * RPM)
     assert case.agrees, [check for check in case.checks if not check.ok]

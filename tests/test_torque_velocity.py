@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import fes_mj
-from fes_mj.crosscheck import cross_check
+from fes_mj.crosscheck import Case
 from fes_mj.joints import JOINTS
 from fes_mj.moments import JointMoments
 from fes_mj.reference_tricycle import PAPER_TRICYCLE
@@ -89,5 +89,5 @@ def test_by_hand_at_one_angle() -> None:
 @pytest.mark.parametrize("legs", [1, 2])
 def test_the_cross_check_agrees_with_the_relation_too(design: fes_mj.Design, legs: int) -> None:
     moments = replace(fes_mj.load_moments("p1p2"), torque_velocity=HILL)
-    result = cross_check(design, moments, legs=legs)
+    result = Case(design, moments, legs=legs)
     assert result.agrees, [check for check in result.checks if not check.ok]

@@ -18,8 +18,8 @@ from fes_mj.provenance import provenance
 ROUNDS = 15
 PYTHON, COMMAND = sys.executable, str(Path(sys.executable).with_name("fes_mj"))
 MEASURE = """
-import time; import numpy, mujoco; from fes_mj import cross_check, load_design, load_moments
-d1, p1p2 = load_design("d1"), load_moments("p1p2"); start = time.perf_counter(); cross_check(d1, p1p2)
+import time; import numpy, mujoco; from fes_mj import Case, load_design, load_moments
+d1, p1p2 = load_design("d1"), load_moments("p1p2"); start = time.perf_counter(); Case(d1, p1p2).checks
 print(time.perf_counter() - start)
 """
 CANDIDATES = {

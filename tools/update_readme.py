@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from fes_mj.crosscheck import cross_check
+from fes_mj.crosscheck import Case
 from fes_mj.design_file import DESIGNS, load_design
 from fes_mj.files import write_text
 from fes_mj.moments import GROUPS, load_moments
@@ -19,7 +19,7 @@ def ten_runs() -> Table:
     rows = []
     for name in DESIGNS:
         for group in GROUPS:
-            case = cross_check(load_design(name), load_moments(group))
+            case = Case(load_design(name), load_moments(group))
             difference = round(100 * case.relative_difference, 3) + 0.0  # no minus zero
             powers = (case.static.power_mean, case.simulation.power_mean, difference, table1()[name].power[group])
             rows.append((name.upper(), group.upper(), case.cadence / RPM, *powers))

@@ -22,7 +22,7 @@ import fes_mj
 from fes_mj import kinematics
 from fes_mj.checks import Check
 from fes_mj.console import track
-from fes_mj.crosscheck import cross_check
+from fes_mj.crosscheck import Case
 from fes_mj.design import Design, Linkage, Rider
 from fes_mj.design_file import DESIGNS
 from fes_mj.files import write_text
@@ -146,7 +146,7 @@ def run(trial: Trial) -> Outcome:
         steps = steps_per_turn(trial.design, cadence)
     except fes_mj.InputError:
         return Outcome(trial, math.inf, predicted, (), 0.0)
-    checks = cross_check(trial.design, trial.moments, cadence=cadence, legs=trial.legs).checks
+    checks = Case(trial.design, trial.moments, cadence=cadence, legs=trial.legs).checks
     return Outcome(trial, steps, predicted * (2 * math.pi / TRIAL / steps) ** 2, checks, time.perf_counter() - start)
 
 

@@ -30,8 +30,6 @@ def optimize(
     options: SearchOptions = _DEFAULTS,
     out: Annotated[Path | None, Parameter(name=["--out", "-o"])] = None,
     report: Path | None = None,
-    json: Annotated[bool, Parameter(negative="")] = False,
-    quiet: Annotated[bool, Parameter(alias="-q", negative="")] = False,
 ) -> int:
     """Find the linkage with the most mean crank power; exit code 1 if its simulation disagrees with statics.
 
@@ -43,15 +41,12 @@ def optimize(
         The design file to write (.toml); its model (.xml), and the front (.csv), appear beside it.
     report
         A page on the design (.html): numbers, motion, power, constraints.
-    json
-        Print one JSON object and nothing else.
-    quiet
-        Print nothing.
     """
     options.check()
     _check_files(out, report)
-    moments, problem = options.load_moments(), options.load_problem(kind)
-    outcome = _search(problem, options, quiet or json)
+    moments = options.load_moments()
+    problem = options.load_problem(kind, moments)
+    outcome = _search(problem, options)
     design = problem.design(outcome.x, out.stem if out else f"{kind}-{moments.name}")
     how = f"--method {options.method} --seed {options.seed}"
     origin = f"Found by fes_mj optimize {kind} {how}, {outcome.evaluations} evaluations."
@@ -65,9 +60,9 @@ def optimize(
 
         write_text(report, page_html(winner, outcome, origin))
         files["report"] = str(report)
-    if json:
+    if options.json:
         sys.stdout.write(json_text(outcome.summary(winner) | {"design_file": None, **files}))
-    elif not quiet:
+    elif not options.quiet:
         _print(winner, outcome)
         for what, file in files.items():
             say(f"{what.replace('_', ' ')}: {file}")
@@ -85,7 +80,7 @@ def _check_files(out: Path | None, report: Path | None) -> None:
         require_page_packages()
 
 
-def _search(problem: Problem, options: SearchOptions, silent: bool) -> Outcome:
+def _search(problem: Problem, options: SearchOptions) -> Outcome:
     """The best of several independent searches, or the front."""
     from fes_mj.optimization.optimize import optimize as run
     from fes_mj.optimization.outcome import Outcome, front_outcome
@@ -93,7 +88,7 @@ def _search(problem: Problem, options: SearchOptions, silent: bool) -> Outcome:
 
     if options.method == "nsga-ii":
         return front_outcome(problem, options.budget, options.seed, options.smooth)
-    with progress_bar(f"{options.method}, searches", options.searches, silent) as advance:
+    with progress_bar(f"{options.method}, searches", options.searches, options.silent) as advance:
         results = run(
             problem,
             options.method,

@@ -27,8 +27,8 @@ class Loaded(NamedTuple):
 
 @Parameter(name="*")
 @dataclass
-class LoadOptions:
-    """Options of every command that needs a design in motion.
+class MomentsOptions:
+    """Whose joint moments.
 
     Parameters
     ----------
@@ -36,35 +36,22 @@ class LoadOptions:
         Rider group whose recovered joint moments are used (default p1p2).
     moments
         Your own joint moments instead: a CSV with the header crank_angle_deg,knee_Nm,hip_Nm.
-    cadence
-        Crank speed in rpm; by default the one at which the tricycle does 5.71 km/h.
-    dims
-        Dimensions of a catalogued design: as identified, or as the paper prints them.
-    torque_velocity
-        Let joint moments change with joint speed, by Hill's relation; by default they do not, as in the paper.
     """
 
     group: Literal["p1p2", "p1p3"] | None = None
     moments: Path | None = None
-    cadence: float | None = None
-    dims: Literal["identified", "printed"] = "identified"
-    torque_velocity: Literal["hill"] | None = None
 
-    def load(self, design: str) -> Loaded:
-        """Load everything the options name. Raises InputError for what cannot be used."""
+    def load_moments(self) -> JointMoments:
+        """The joint moments that the options name. Raises InputError for what cannot be used."""
         if self.group and self.moments:
             raise InputError("--group and --moments exclude each other; a file of moments is a group of its own")
-        loaded = load_design(design, self.dims)
-        moments = load_moments(self.moments or self.group or "p1p2")
-        if self.torque_velocity:
-            moments = replace(moments, torque_velocity=load_torque_velocity(self.torque_velocity))
-        return Loaded(loaded, moments, crank_speed(self.cadence, loaded))
+        return load_moments(self.moments or self.group or "p1p2")
 
 
 @Parameter(name="*")
 @dataclass
-class RunOptions(LoadOptions):
-    """Options of every command that runs a design.
+class PrintOptions:
+    """What is printed.
 
     Parameters
     ----------
@@ -72,12 +59,55 @@ class RunOptions(LoadOptions):
         Print one JSON object and nothing else.
     quiet
         Print nothing but errors.
-    verbose
-        Print more: energies and joint forces.
     """
 
     json: Annotated[bool, Parameter(negative="")] = False
     quiet: Annotated[bool, Parameter(alias="-q", negative="")] = False
+
+    @property
+    def silent(self) -> bool:
+        """Whether neither tables nor progress are shown."""
+        return self.json or self.quiet
+
+
+@Parameter(name="*")
+@dataclass
+class LoadOptions(MomentsOptions):
+    """Options of every command that needs a design in motion.
+
+    Parameters
+    ----------
+    cadence
+        Crank speed in rpm; by default the one at which the tricycle does 5.71 km/h.
+    dims
+        Dimensions of one of the paper's designs: as identified, or as the paper prints them.
+    torque_velocity
+        Let joint moments change with joint speed, by Hill's relation; by default they do not, as in the paper.
+    """
+
+    cadence: float | None = None
+    dims: Literal["identified", "printed"] = "identified"
+    torque_velocity: Literal["hill"] | None = None
+
+    def load(self, design: str) -> Loaded:
+        """Load everything the options name. Raises InputError for what cannot be used."""
+        moments, loaded = self.load_moments(), load_design(design, self.dims)
+        if self.torque_velocity:
+            moments = replace(moments, torque_velocity=load_torque_velocity(self.torque_velocity))
+        return Loaded(loaded, moments, crank_speed(self.cadence, loaded))
+
+
+@Parameter(name="*")
+@dataclass
+class RunOptions(PrintOptions, LoadOptions):
+    """Options of every command that runs a design.
+
+    Parameters
+    ----------
+    verbose
+        Print more: energies and joint forces.
+    """
+
     verbose: Annotated[bool, Parameter(alias="-v", negative="")] = False
 
 

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Parameter
 
+from fes_mj.cli.options import MomentsOptions, PrintOptions
 from fes_mj.errors import InputError
-from fes_mj.moments import JointMoments, load_moments
+from fes_mj.moments import JointMoments
 
 if TYPE_CHECKING:
     from fes_mj.optimization.problem import Problem
@@ -19,17 +20,13 @@ Methods = Literal["differential-evolution", "cma-es", "nsga-ii", "random-pursuit
 
 @Parameter(name="*")
 @dataclass
-class SearchOptions:
+class SearchOptions(PrintOptions, MomentsOptions):
     """Options of a search.
 
     Parameters
     ----------
-    group
-        Rider group whose recovered joint moments are used (default p1p2); nsga-ii weighs both.
-    moments
-        Your own joint moments instead: a CSV with the header crank_angle_deg,knee_Nm,hip_Nm.
     method
-        The method; cma-es and nsga-ii come with the extra `optimize`.
+        The method; cma-es and nsga-ii come with the extra `optimize`, and nsga-ii weighs both groups.
     budget
         Evaluations of each search (default 50,000; random pursuit stops by itself).
     searches
@@ -56,8 +53,6 @@ class SearchOptions:
         Dask scheduler, tcp://host:port, to send the searches to.
     """
 
-    group: Literal["p1p2", "p1p3"] | None = None
-    moments: Path | None = None
     method: Methods = "differential-evolution"
     budget: int | None = None
     searches: int = 4
@@ -74,8 +69,6 @@ class SearchOptions:
 
     def check(self) -> None:
         """Refuse unusable options before anything runs."""
-        if self.group and self.moments:
-            raise InputError("--group and --moments exclude each other; a file of moments is a group of its own")
         if self.budget is not None and self.budget < 1000:
             raise InputError(f"--budget is {self.budget}; it must be at least 1000 evaluations (a second makes 50,000)")
         if self.searches < 1:
@@ -91,18 +84,14 @@ class SearchOptions:
         if self.smooth and self.method != "nsga-ii":
             raise InputError("--smooth is an objective of its own: it needs --method nsga-ii")
 
-    def load_moments(self) -> JointMoments:
-        """The joint moments that the options name."""
-        return load_moments(self.moments or self.group or "p1p2")
-
-    def load_problem(self, kind: str) -> Problem:
+    def load_problem(self, kind: str, moments: JointMoments) -> Problem:
         """The problem that the options describe."""
         from fes_mj.optimization.problem import make_problem
         from fes_mj.optimization.problem_file import DEFAULT
 
         return make_problem(
             kind,
-            self.load_moments(),
+            moments,
             compared_with=self.speeds_of,
             start=self.start,
             limits=self.problem or DEFAULT,

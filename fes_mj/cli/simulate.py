@@ -56,9 +56,9 @@ def simulate(
     """
     loaded = options.load(design)
     _check(render, out, timestep, turns)
-    from fes_mj.crosscheck import cross_check
+    from fes_mj.crosscheck import Case
 
-    case = cross_check(loaded.design, loaded.moments, cadence=loaded.cadence, timestep=timestep, turns=turns, legs=legs)
+    case = Case(*loaded, timestep, turns, legs)
     if out:
         _write(case, out)
     if options.json:
@@ -69,7 +69,7 @@ def simulate(
         from fes_mj.viewing.render import render_video
 
         render_video(case, render, quiet=options.quiet)
-        if not (options.json or options.quiet):
+        if not options.silent:
             say(f"video: {render}")
     return 0 if case.agrees else 1
 

@@ -10,8 +10,11 @@ from typing import Annotated, Any
 
 from cyclopts import Parameter
 
+from fes_mj.cli.options import PrintOptions
 from fes_mj.console import print_table, progress_bar
 from fes_mj.files import json_text, require_folder
+
+_DEFAULTS = PrintOptions()
 
 
 def sweep(
@@ -21,8 +24,7 @@ def sweep(
     out: Annotated[Path, Parameter(name=["--out", "-o"])],
     jobs: int | None = None,
     cluster: str | None = None,
-    json: Annotated[bool, Parameter(negative="")] = False,
-    quiet: Annotated[bool, Parameter(alias="-q", negative="")] = False,
+    options: PrintOptions = _DEFAULTS,
 ) -> int:
     """Evaluate every point of a study; started again with the same folder, it does only what is missing.
 
@@ -36,10 +38,6 @@ def sweep(
         Processes (default: one a core).
     cluster
         Dask scheduler, tcp://host:port, to send the chunks to.
-    json
-        Print one JSON object and nothing else.
-    quiet
-        Print nothing.
     """
     from fes_mj.parallel import Workers
     from fes_mj.sweep.study import load_study
@@ -52,14 +50,16 @@ def sweep(
     total = sweep.study.points
     before = sum(min(sweep.study.chunk, total - chunk * sweep.study.chunk) for chunk in sweep.finished())
     start = time.perf_counter()
-    with progress_bar(f"{study.stem}, points", total, quiet or json, before) as advance:
+    # each process compiles the loop of a dynamic study, which takes seconds
+    first = ", its loop is compiled first" if sweep.study.analysis == "dynamic" else ""
+    with progress_bar(f"{study.stem}, points{first}", total, options.silent, before) as advance:
         sweep.run(workers, advance)
     seconds = time.perf_counter() - start
     summary = sweep.summary() | {"found_finished": before, "seconds": seconds}
     summary["points_per_second"] = (summary["points"] - before) / seconds
-    if json:
+    if options.json:
         sys.stdout.write(json_text(summary))
-    elif not quiet:
+    elif not options.quiet:
         _print(summary, study.stem)
     return 0
 

@@ -57,9 +57,8 @@ def validate(
     """
     cases = list(_cases(designs or DESIGNS, options, quick))
     _check_files(report, junit, video)
-    quiet = options.quiet or options.json
-    checks = _run_checks(cases, quick, quiet)
-    detections = _inject(designs[0] if designs else FAULTY_DESIGN, options, quiet) if faults else ()
+    checks = _run_checks(cases, quick, options.silent)
+    detections = _inject(designs[0] if designs else FAULTY_DESIGN, options) if faults else ()
     broken = {each.subject for each in checks if each.name == "stability" and not each.ok}
     measured = [case for case in cases if case.name not in broken]
     ok = all(each.ok for each in checks) and all(each.caught for each in detections)
@@ -116,14 +115,14 @@ def _run_checks(cases: list[VerificationCase], quick: bool, quiet: bool) -> list
     return [each for run in track(runs, "checking", quiet) for each in run]
 
 
-def _inject(design: str, options: RunOptions, quiet: bool) -> tuple[Detection, ...]:
+def _inject(design: str, options: RunOptions) -> tuple[Detection, ...]:
     from fes_mj.verification.faults import inject, passing
     from fes_mj.verification.mistakes import faults
 
     case = next(_cases((design,), options, quick=True))
     baseline = passing(case)
     possible = [fault for fault in faults() if fault.applies(case)]
-    return tuple(inject(fault, case, baseline) for fault in track(possible, "injecting faults", quiet))
+    return tuple(inject(fault, case, baseline) for fault in track(possible, "injecting faults", options.silent))
 
 
 def _summary(

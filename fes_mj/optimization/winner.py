@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fes_mj.crosscheck import Case, cross_check
+from fes_mj.crosscheck import Case
 from fes_mj.cycles import WorkTable, cycles, joint_speeds
 from fes_mj.design import Design
 from fes_mj.joints import PerJoint
@@ -62,7 +62,7 @@ def assess(design: Design, compared_with: Design, moments: JointMoments, seed: i
     """Simulate a design against statics, compare it with another one, sample its tolerances."""
     table, random = WorkTable.of(moments), np.random.default_rng(seed)
     return Winner(
-        case=cross_check(design, moments),
+        case=Case(design, moments),
         compared_with=compared_with,
         joint_speed=joint_speeds(design, table),
         reversals=cycles(design, table).reversals.map(lambda count: int(count[0])),

@@ -10,6 +10,7 @@ import numpy as np
 from fes_mj.arrays import FloatArray
 from fes_mj.design import TRICYCLE_SPEED
 from fes_mj.moments import GROUPS
+from fes_mj.paper.captions import captioned
 from fes_mj.paper.printed import SIX_BARS, table1
 from fes_mj.paper.runs import Runs, joint_speed
 from fes_mj.statics import QuasiStatic, quasi_static, ratio_sd
@@ -32,22 +33,7 @@ def speed_table(runs: Runs) -> Table:
                 _gain(other, base) for other, base in ((result, trt), (slowed, trt), (hill, runs.hill["trt", group]))
             ]
             rows.append((name.upper(), group, speed, *gains, f"{hill.power_mean:.1f} +- {hill.power_sd:.1f}"))
-    columns = {
-        "design": "",
-        "group": "",
-        "knee speed per TRT's": ".2f",
-        "gain, speed-free (paper)": "",
-        "gain at equal mean knee speed": "",
-        "gain with Hill": "",
-        "power with Hill, W": "",
-    }
-    note = (
-        "Gain is mean power per the TRT's under the same assumption. At equal mean knee speed the six-bar is geared "
-        "down until its knee moves as fast as the TRT's on average. Hill: data/torque_velocity.toml; the relation is 1 "
-        "at the speed the joint had in the TRT, so the TRT keeps its power. The standard deviations are those of the "
-        "recovered moments only, not of Hill's parameters; for these see below."
-    )
-    return Table("Gains and joint speed", columns, rows, note)
+    return captioned("speed", rows)
 
 
 def hill_table(runs: Runs) -> Table:
@@ -65,8 +51,8 @@ def hill_table(runs: Runs) -> Table:
         "eccentric plateau 1.8": replace(hill, eccentric_plateau=1.8),
     }
     rows = [(title, *_hill_gains(runs, relation)) for title, relation in cases.items()]
-    columns = {"Hill's parameters": "", **{f"{name.upper()} {g}": ".2f" for name in SIX_BARS for g in GROUPS}}
-    return Table("Gain over the TRT with other parameters of Hill's relation", columns, rows)
+    gains = [f"{name.upper()} {group}" for name in SIX_BARS for group in GROUPS]
+    return captioned("hill", rows, gain=gains)
 
 
 def smoothness_table(runs: Runs) -> Table:
@@ -83,25 +69,7 @@ def smoothness_table(runs: Runs) -> Table:
         rows.append(
             (name.upper(), group, str(legs), *swings, *(value / work for value in energy), 100 * energy[1] / inertia)
         )
-    columns = {
-        "design": "",
-        "group": "",
-        "legs": "",
-        "muscles, W p-p": ".0f",
-        "masses and weight, W p-p": ".0f",
-        "both, W p-p": ".0f",
-        "energy fluctuation: muscles": ".2f",
-        "both": ".2f",
-        "speed fluctuation, %": ".1f",
-    }
-    note = (
-        "Crank power of all legs at constant cadence, peak to peak: of the joint moments alone, of segment masses and "
-        "weight alone, and MuJoCo's of both. Energy fluctuation: coefficient of fluctuation of energy, the swing of "
-        "the crank's energy against a constant load per work of a turn. Speed fluctuation: the same swing, of both, "
-        f"per twice the kinetic energy of rider and tricycle ({TRICYCLE_MASS:g} kg) at 5.71 km/h, the coefficient of "
-        "fluctuation of speed of a fixed drive."
-    )
-    return Table("How smooth the power is", columns, rows, note)
+    return captioned("smoothness", rows, mass=f"{TRICYCLE_MASS:g}")
 
 
 def at_knee_speed(result: QuasiStatic, mean_speed: float) -> QuasiStatic:

@@ -13,6 +13,7 @@ from fes_mj.geometry import bounding_box, transmission_angles
 from fes_mj.joints import JOINTS
 from fes_mj.kinematics import Motion
 from fes_mj.moments import GROUPS
+from fes_mj.paper.captions import captioned
 from fes_mj.paper.reconstruction import Posterior
 from fes_mj.paper.runs import Runs
 from fes_mj.statics import QuasiStatic
@@ -33,19 +34,7 @@ def size_table(runs: Runs) -> Table:
         rows.append(
             (name.upper(), 100 * distance, 100 * width, 100 * height, angles["knee"], angles.get("rocker_joint"))
         )
-    columns = {
-        "design": "",
-        "hip to crank centre, cm": ".1f",
-        "length, cm": ".1f",
-        "height, cm": ".1f",
-        "smallest transmission angle: knee, deg": ".1f",
-        "rocker joint, deg": ".1f",
-    }
-    note = (
-        "Length and height of the box around hip, knee and every joint of the linkage over the turn. Transmission "
-        "angle: between the two links of a dyad, folded to at most 90 deg; a usual rule wants more than 40 deg."
-    )
-    return Table("7.1 Size and transmission", columns, rows, note)
+    return captioned("size", rows)
 
 
 def continuity_table(runs: Runs, posteriors: dict[str, Posterior]) -> Table:
@@ -55,14 +44,7 @@ def continuity_table(runs: Runs, posteriors: dict[str, Posterior]) -> Table:
         jumps = [_with_sd(*posteriors[group].predict(weights)) for weights in jump_weights(result)]
         costs = [_with_sd(*posteriors[group].predict(smoothing_weights(result, np.radians(w)))) for w in WIDTHS]
         rows.append((name.upper(), group, *jumps, *costs))
-    ends = [f"{joint} at {end}, N m" for joint in JOINTS for end in ("most bent", "most extended")]
-    columns = dict.fromkeys(["design", "group", *ends, *(f"cost of {w:g} deg, W" for w in WIDTHS)], "")
-    note = (
-        "Jump: moment in extension less moment in flexion at that angle. Cost: what mean power loses "
-        "when within so many degrees of either end each joint's moment passes linearly into the mean of its two "
-        "branches. The TRT's ends are the map's own: no jump, but near them the branches are smoothed as well."
-    )
-    return Table("7.2 Continuity of the joint moments", columns, rows, note)
+    return captioned("continuity", rows, width=[f"{width:g}" for width in WIDTHS])
 
 
 def distribution_table(runs: Runs) -> Table:
@@ -72,16 +54,7 @@ def distribution_table(runs: Runs) -> Table:
         power = result.power
         lowest, highest = float(power.min()), float(power.max())
         rows.append((name.upper(), group, 100 * inactive_share(power), lowest, highest, highest / result.power_mean))
-    columns = {
-        "design": "",
-        "group": "",
-        "inactive zone, % of turn": ".1f",
-        "lowest, W": ".1f",
-        "highest, W": ".1f",
-        "peak per mean": ".2f",
-    }
-    note = "Inactive zone: where one leg's muscles take power from the crank. Segment masses are left out here."
-    return Table("7.3 Distribution of power", columns, rows, note)
+    return captioned("distribution", rows)
 
 
 class Criterion(NamedTuple):
@@ -118,18 +91,7 @@ def ranking_table(runs: Runs, posteriors: dict[str, Posterior]) -> Table:
         (name.upper(), *scores[i], total[i], str(1 + int(np.sum(total > total[i]))), 100 * wins[i])
         for i, name in enumerate(results)
     ]
-    columns = {
-        "design": "",
-        **{criterion.title: ".2f" for criterion in criteria},
-        "mean score": ".2f",
-        "rank": "",
-        "first for, % of weights": ".0f",
-    }
-    note = (
-        f"Each criterion runs from 0 (worst of the five) to 1 (best); all {len(criteria)} weigh the same. Last column: "
-        "how often a design is first when the weights are drawn at random (uniformly among those that add to 1)."
-    )
-    return Table("A ranking", columns, rows, note)
+    return captioned("ranking", rows, criterion=[criterion.title for criterion in criteria], count=str(len(criteria)))
 
 
 def extent(motion: Motion) -> tuple[float, float]:

@@ -13,6 +13,7 @@ from fes_mj.arrays import FloatArray
 from fes_mj.design_file import load_design
 from fes_mj.errors import AssemblyError
 from fes_mj.geometry import grashof_margin, joint_ranges, require_assembly
+from fes_mj.paper.captions import captioned
 from fes_mj.paper.identification import COUPLER_ANGLE, SEAT_ANGLE, identify, range_misfit
 from fes_mj.paper.printed import SIX_BARS, table1
 from fes_mj.table import Table
@@ -55,14 +56,7 @@ def readings_table(done: Callable[[], None]) -> Table:
         outcome = dict(_outcomes(reading))
         rows.append((reading.title, *(outcome.get(name, "as chosen") for name in SIX_BARS)))
         done()
-    return Table(
-        "Other readings",
-        {"reading": "", **dict.fromkeys((name.upper() for name in SIX_BARS), "")},
-        rows,
-        "Where a point inside the rounding of Table 2 moves as Table 1 says, the cost: the sum of squared shifts, each "
-        "in half-widths of the rounding (0.5 cm). Where none was found, by how many degrees the least-squares fit "
-        "inside the rounding misses a joint range.",
-    )
+    return captioned("readings", rows, design=[name.upper() for name in SIX_BARS])
 
 
 def _outcomes(reading: Reading) -> Iterator[tuple[str, str]]:
@@ -87,9 +81,7 @@ def dimensions_table() -> Table:
             (name.upper(), length, *values)
             for length, *values in zip(LENGTHS, printed, identified, identified - printed, strict=True)
         ]
-    columns = {"design": "", "length": "", "printed, cm": ".0f", "identified, cm": ".3f", "shift, cm": "+.3f"}
-    note = "Seat angle 30 deg and gamma 90 deg for all; the gear ratio is as printed. Rounding allows 0.5 cm of shift."
-    return Table("Table 2: dimensions", columns, rows, note)
+    return captioned("dimensions", rows)
 
 
 def ranges_table() -> Table:
@@ -108,17 +100,7 @@ def ranges_table() -> Table:
             verdict = "cannot turn" if error is None else "yes" if error <= 0.5 else "no"
             margin = None if name == "trt" else 100 * float(grashof_margin(design))
             rows.append((name.upper(), dims, _span(wanted, 0), _span(ranges, 1), error, verdict, margin))
-    columns = {
-        "design": "",
-        "dimensions": "",
-        "paper: knee, hip, deg": "",
-        "ours: knee, hip, deg": "",
-        "largest difference, deg": ".2f",
-        "within rounding": "",
-        "Grashof margin, cm": ".2f",
-    }
-    note = "Table 1 is rounded to 1 deg. The TRT's seat angle is 60 deg in Section 3 and 15.4 deg with Table 2's R1."
-    return Table("Table 1: joint ranges", columns, rows, note)
+    return captioned("ranges", rows)
 
 
 def _span(ranges: list[float] | FloatArray, digits: int) -> str:

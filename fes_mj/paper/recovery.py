@@ -16,6 +16,7 @@ from fes_mj.geometry import joint_ranges
 from fes_mj.joints import JOINTS
 from fes_mj.kinematics import FULL_TURN, solve
 from fes_mj.moments import GROUPS
+from fes_mj.paper.captions import captioned
 from fes_mj.paper.evidence import Evidence, functional
 from fes_mj.paper.identification import LENGTH_ROUNDING
 from fes_mj.paper.printed import SIX_BARS, table1
@@ -50,21 +51,7 @@ def evidence_table(evidence: list[Evidence], recovered: Reconstruction) -> Table
                 _unit(row),
             )
         )
-    columns = {
-        "evidence": "",
-        "value": "",
-        "recovered": "",
-        "residual, errors": "+.1f",
-        "left out": "",
-        "misses by, sd": "+.1f",
-        "unit": "",
-    }
-    note = (
-        "A share of work s is a ratio; multiplied out it says that part - s x whole is 0 W, with 15 W for the whole in "
-        "its error. `left out` is the prediction from all other rows; `misses by` is in standard deviations of "
-        "prediction and evidence together."
-    )
-    return Table("Evidence", columns, rows, note)
+    return captioned("evidence", rows)
 
 
 def left_out_table(evidence: list[Evidence], recovered: Reconstruction) -> Table:
@@ -80,21 +67,7 @@ def left_out_table(evidence: list[Evidence], recovered: Reconstruction) -> Table
             sigmas = (mean - row.value) / np.hypot(deviation, row.error)
             cells = (row.group, row.design.upper(), title, row.value, mean, deviation, relative, sigmas)
             rows.append(cells)
-    columns = {
-        "group": "",
-        "design": "",
-        "left out": "",
-        "paper, W": ".2f",
-        "predicted, W": ".2f",
-        "sd, W": ".2f",
-        "error, %": "+.1f",
-        "error, sd": "+.1f",
-    }
-    note = (
-        "The 15 W of Section 3 are the TRT's power with slightly other legs: with them among the evidence the TRT is "
-        "hardly left out. The lines without both are the honest ones."
-    )
-    return Table("Leaving printed powers out", columns, rows, note)
+    return captioned("left_out", rows)
 
 
 def sensitivity_table(evidence: list[Evidence], recovered: Reconstruction) -> Table:
@@ -114,15 +87,7 @@ def sensitivity_table(evidence: list[Evidence], recovered: Reconstruction) -> Ta
         )
         gains = [_gain(posterior) for posterior in posteriors.values()]
         rows.append((title, hyperparameters.length, hyperparameters.amplitude, likelihood, worst, *gains))
-    columns = {
-        "case": "",
-        "length": ".2f",
-        "amplitude, N m": ".1f",
-        "log-likelihood": ".2f",
-        "largest residual, errors": ".1f",
-        **{f"D1 per TRT, {group}": "" for group in GROUPS},
-    }
-    return Table("Sensitivity to the hyperparameters", columns, rows)
+    return captioned("sensitivity", rows, group=GROUPS)
 
 
 def predictive_table(recovered: Reconstruction) -> Table:
@@ -152,9 +117,7 @@ def predictive_table(recovered: Reconstruction) -> Table:
     share, deviation, _ = _negative_share(load_design("trt"), recovered.posteriors["p1p2"])
     cell = f"{100 * share:.0f} +- {100 * deviation:.0f} % below -{100 * VISIBLE:.0f} % of the peak"
     rows.append(("7.3: the TRT's power turns negative in its second half, p1p2", "negative", cell, "not used"))
-    return Table(
-        "What the text says of the figures", {"statement": "", "paper": "", "recovered": "", "evidence": ""}, rows
-    )
+    return captioned("predictive", rows)
 
 
 def rounding_table(recovered: Reconstruction, batch: int = 10_000, wanted: int = 200) -> Table:
@@ -165,11 +128,7 @@ def rounding_table(recovered: Reconstruction, batch: int = 10_000, wanted: int =
         for group, posterior in recovered.posteriors.items():
             change = weights @ posterior.mean - _weights(load_design(name)) @ posterior.mean
             rows.append((name.upper(), group, float(np.sqrt(np.mean(change**2))), float(change.mean()), len(weights)))
-    columns = {"design": "", "group": "", "rms, W": ".2f", "mean, W": "+.2f", "linkages": "d"}
-    note = (
-        "Difference of power to the identified linkage under the same curves: why a six-bar's evidence has 0.4 W error."
-    )
-    return Table("What the rounding of Table 2 leaves open", columns, rows, note)
+    return captioned("rounding", rows)
 
 
 def _inside_rounding(name: str, random: np.random.Generator, batch: int, wanted: int) -> Iterable[Design]:

@@ -11,8 +11,8 @@ from fes_mj.files import json_text, replacing, write_text
 from fes_mj.paper import gains, metrics, readings, recovery, tables
 from fes_mj.paper.evidence import load_evidence
 from fes_mj.paper.printed import DATA
-from fes_mj.paper.reconstruction import Reconstruction, reconstruct
-from fes_mj.paper.runs import RUNS, Runs, run_all
+from fes_mj.paper.reconstruction import reconstruct
+from fes_mj.paper.runs import RUNS, run_all
 from fes_mj.provenance import provenance
 from fes_mj.style import STYLE
 from fes_mj.table import Table
@@ -44,11 +44,43 @@ def reproduce(folder: Path, done: Done, svg: bool = False) -> list[Path]:
     recovered = reconstruct(evidence)
     runs = run_all(done)
     pages = {
-        "identification.md": ("Dimensions behind the paper's Table 2", _identification(done)),
-        "moments.md": ("Joint moments recovered from the paper's powers", _moments(evidence, recovered)),
-        "powers.md": ("Powers, gains and joint ranges beside the paper's", _powers(runs)),
-        "metrics.md": ("The criteria of Section 7 as numbers", _metrics(runs, recovered)),
-        "gains.md": ("How much of the gain is real", _gains(runs)),
+        "identification.md": (
+            "Dimensions behind the paper's Table 2",
+            [readings.dimensions_table(), readings.ranges_table(), readings.readings_table(done)],
+        ),
+        "moments.md": (
+            "Joint moments recovered from the paper's powers",
+            [
+                recovery.evidence_table(evidence, recovered),
+                recovery.left_out_table(evidence, recovered),
+                recovery.sensitivity_table(evidence, recovered),
+                recovery.predictive_table(recovered),
+                recovery.rounding_table(recovered),
+            ],
+        ),
+        "powers.md": (
+            "Powers, gains and joint ranges beside the paper's",
+            [
+                tables.power_table(runs),
+                tables.gain_table(runs),
+                tables.motion_table(runs),
+                readings.ranges_table(),
+                tables.check_table(runs),
+            ],
+        ),
+        "metrics.md": (
+            "The criteria of Section 7 as numbers",
+            [
+                metrics.size_table(runs),
+                metrics.continuity_table(runs, recovered.posteriors),
+                metrics.distribution_table(runs),
+                metrics.ranking_table(runs, recovered.posteriors),
+            ],
+        ),
+        "gains.md": (
+            "How much of the gain is real",
+            [table(runs) for table in (gains.speed_table, gains.hill_table, gains.smoothness_table)],
+        ),
     }
     written = [_write_page(folder / name, *page) for name, page in pages.items()]
     (folder / "figures").mkdir(exist_ok=True)
@@ -56,6 +88,7 @@ def reproduce(folder: Path, done: Done, svg: bool = False) -> list[Path]:
         written += _write_figure(folder / "figures" / name, partial(draw, runs, recovered.posteriors), svg)
         done()
     record = {"provenance": provenance(inputs(), ["matplotlib"]), "hyperparameters": recovered.hyperparameters.__dict__}
+    record["timestep_s"] = {" ".join(map(str, run)): case.simulation.timestep for run, case in runs.dynamic.items()}
     record |= {
         name.removesuffix(".md"): {table.title: table.records() for table in contents}
         for name, (_, contents) in pages.items()
@@ -67,43 +100,6 @@ def inputs() -> list[Path]:
     """The data files that the results depend on."""
     shared = [DATA / f"{name}.toml" for name in ("paper", "evidence", "torque_velocity")]
     return [*shared, *sorted((DATA / "designs").glob("*/*.toml")), *sorted((DATA / "moments").iterdir())]
-
-
-def _identification(done: Done) -> list[Table]:
-    return [readings.dimensions_table(), readings.ranges_table(), readings.readings_table(done)]
-
-
-def _moments(evidence: list[Any], recovered: Reconstruction) -> list[Table]:
-    return [
-        recovery.evidence_table(evidence, recovered),
-        recovery.left_out_table(evidence, recovered),
-        recovery.sensitivity_table(evidence, recovered),
-        recovery.predictive_table(recovered),
-        recovery.rounding_table(recovered),
-    ]
-
-
-def _powers(runs: Runs) -> list[Table]:
-    return [
-        tables.power_table(runs),
-        tables.gain_table(runs),
-        tables.motion_table(runs),
-        readings.ranges_table(),
-        tables.check_table(runs),
-    ]
-
-
-def _metrics(runs: Runs, recovered: Reconstruction) -> list[Table]:
-    return [
-        metrics.size_table(runs),
-        metrics.continuity_table(runs, recovered.posteriors),
-        metrics.distribution_table(runs),
-        metrics.ranking_table(runs, recovered.posteriors),
-    ]
-
-
-def _gains(runs: Runs) -> list[Table]:
-    return [gains.speed_table(runs), gains.hill_table(runs), gains.smoothness_table(runs)]
 
 
 def _write_page(path: Path, title: str, contents: list[Table]) -> Path:

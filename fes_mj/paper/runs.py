@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fes_mj.crosscheck import Case, cross_check
+from fes_mj.crosscheck import Case
 from fes_mj.design_file import DESIGNS, load_design
 from fes_mj.errors import AssemblyError
 from fes_mj.moments import GROUPS, load_moments
@@ -43,7 +43,7 @@ def run_all(done: Callable[[], None]) -> Runs:
             except AssemblyError:
                 runs.printed[key] = None
             for legs in (1, 2):
-                runs.dynamic[name, group, legs] = cross_check(design, moments[group], legs=legs)
+                runs.dynamic[name, group, legs] = Case(design, moments[group], legs=legs)
                 done()
     return runs
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from fes_mj.moments import GROUPS
+from fes_mj.paper.captions import captioned
 from fes_mj.paper.printed import SIX_BARS, table1
 from fes_mj.paper.runs import Runs, joint_speed
 from fes_mj.statics import ratio_sd
@@ -35,23 +36,7 @@ def power_table(runs: Runs) -> Table:
                 explained_by(difference, deviation),
             )
         )
-    columns = {
-        "design": "",
-        "group": "",
-        "paper, W": ".2f",
-        "printed dimensions, W": "",
-        "identified: static, W": ".3f",
-        "sd, W": ".2f",
-        "dynamic, W": ".3f",
-        "dynamic - paper, W": "+.2f",
-        "difference is within": "",
-    }
-    note = (
-        "One leg, cycle mean, at the crank. The moments were recovered from these very powers, so agreement within the "
-        "standard deviation says that one pair of curves explains all five designs, not that they were predicted; "
-        "for predictions see the leave-one-out table of moments.md. Rounding is 0.005 W."
-    )
-    return Table("Table 1: mean crank power", columns, rows, note)
+    return captioned("power", rows)
 
 
 def explained_by(difference: float, deviation: float) -> str:
@@ -70,17 +55,7 @@ def gain_table(runs: Runs) -> Table:
             gain = result.power_mean / trt.power_mean
             cadence, work = result.cadence / trt.cadence, result.work_per_turn / trt.work_per_turn
             rows.append((name.upper(), group, said, gain, ratio_sd(result, trt), cadence, work))
-    columns = {
-        "design": "",
-        "group": "",
-        "paper": ".3f",
-        "ours": ".3f",
-        "sd": ".3f",
-        "of cadence": ".3f",
-        "of work per turn": ".3f",
-    }
-    note = "Each number is a ratio to the TRT's. The gain is the product of its last two columns."
-    return Table("Gain over the TRT", columns, rows, note)
+    return captioned("gain", rows)
 
 
 def motion_table(runs: Runs) -> Table:
@@ -91,16 +66,7 @@ def motion_table(runs: Runs) -> Table:
         knee, hip = (np.degrees(joint_speed(results[0], joint)) for joint in ("knee", "hip"))
         rpm = results[0].cadence / RPM
         rows.append((name.upper(), rpm, *(result.work_per_turn for result in results), *knee, *hip))
-    columns = {
-        "design": "",
-        "cadence, rpm": ".1f",
-        **{f"work per turn {group}, J": ".2f" for group in GROUPS},
-        "knee speed mean, deg/s": ".0f",
-        "peak, deg/s": ".0f",
-        "hip speed mean, deg/s": ".0f",
-        "hip peak, deg/s": ".0f",
-    }
-    return Table("Cadence, work per turn and joint speeds", columns, rows, "Speeds are absolute values; one leg.")
+    return captioned("motion", rows, group=GROUPS)
 
 
 def check_table(runs: Runs) -> Table:
@@ -110,18 +76,7 @@ def check_table(runs: Runs) -> Table:
         run = case.simulation
         worst = max(case.checks, key=lambda check: check.value / check.limit)
         share = f"{worst.name.replace('_', ' ')}: {100 * worst.value / worst.limit:.0f} %"
-        measured = (100 * case.relative_difference, 1e6 * run.loop_gap_max, 1e6 * run.cadence_ripple)
+        measured = (100 * case.relative_difference, 1e6 * run.loop_gap_max, 1e12 * run.cadence_ripple)
         cells = (str(legs), 1e3 * run.timestep, *measured, share, "yes" if case.agrees else "NO")
         rows.append((name.upper(), group, *cells))
-    columns = {
-        "design": "",
-        "group": "",
-        "legs": "",
-        "time step, ms": ".3f",
-        "mean power, % off": "+.4f",
-        "loop gap, um": ".2f",
-        "cadence ripple, 1e-6": ".1f",
-        "nearest to its limit": "",
-        "agrees": "",
-    }
-    return Table("Dynamic against static", columns, rows)
+    return captioned("check", rows)

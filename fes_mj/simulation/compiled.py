@@ -27,7 +27,7 @@ def compiled_loop(torque: TorqueMap, drives: dict[str, str]) -> Loop:
     if torque.moments.torque_velocity is not None:
         raise ValueError("the compiled loop takes moments that do not depend on speed")
     advance = _advance()
-    maps = [item for joint in JOINTS for item in (torque.parameters(joint), torque.table[joint])]
+    knee, hip = ((torque.parameters(joint), torque.table[joint]) for joint in JOINTS)
     kinds = np.array([JOINTS.index(joint) for joint in drives.values()])
 
     def loop(model: mujoco.MjModel, data: mujoco.MjData, count: int) -> tuple[FloatArray, Records]:
@@ -38,9 +38,9 @@ def compiled_loop(torque: TorqueMap, drives: dict[str, str]) -> Loop:
         forces = data.efc_force
         sensor_rows = np.empty((count + 1, model.nsensordata))
         force_rows = np.empty((-(-count // FORCE_EVERY), len(forces)))
-        memory = (model.opt.timestep / 2, model._address, data._address, addresses, kinds, *maps)
         state = (data.qpos, data.qvel, data.qacc, data.qfrc_bias, data.ctrl, data.sensordata, forces)
-        advance(*memory, *state, sensor_rows, force_rows)
+        pointers = (model._address, data._address)
+        advance(model.opt.timestep / 2, pointers, addresses, kinds, knee, hip, state, (sensor_rows, force_rows))
         if data.efc_force.ctypes.data != forces.ctypes.data:
             raise AssertionError("MuJoCo moved its constraint forces during a run")
         return sensor_rows, {"efc_force": force_rows}
@@ -65,34 +65,20 @@ def _advance() -> Callable[..., None]:
 
     @njit(nogil=True)  # type: ignore[untyped-decorator]
     def advance(
-        half: float,
-        model: int,
-        data: int,
-        addresses: Any,
-        kinds: Any,
-        knee_where: Any,
-        knee_table: Any,
-        hip_where: Any,
-        hip_table: Any,
-        qpos: Any,
-        qvel: Any,
-        acceleration: Any,
-        bias: Any,
-        ctrl: Any,
-        sensors: Any,
-        forces: Any,
-        sensor_rows: Any,
-        force_rows: Any,
+        half: float, pointers: Any, addresses: Any, kinds: Any, knee: Any, hip: Any, state: Any, records: Any
     ) -> None:
+        model, data = pointers
+        qpos, qvel, acceleration, bias, ctrl, sensors, forces = state
+        sensor_rows, force_rows = records
         held, lead = np.empty(len(qvel)), np.empty(len(qvel))
         for row in range(len(sensor_rows) - 1):
             lead[:] = qvel + half * acceleration  # as in stepping.recording_loop
             for drive in range(len(kinds)):
                 actuator, position, speed = addresses[drive]
                 if kinds[drive] == 0:
-                    ctrl[actuator] = knee_map(knee_where, knee_table, qpos[position], lead[speed])
+                    ctrl[actuator] = knee_map(knee[0], knee[1], qpos[position], lead[speed])
                 else:
-                    ctrl[actuator] = hip_map(hip_where, hip_table, qpos[position], lead[speed])
+                    ctrl[actuator] = hip_map(hip[0], hip[1], qpos[position], lead[speed])
             first(model, data)
             held[:] = qvel
             qvel[:] = lead

@@ -8,10 +8,15 @@ from functools import cached_property
 from typing import Any, NamedTuple
 
 from fes_mj.crosscheck import Case
-from fes_mj.units import RPM
 from fes_mj.verification.energy import Audit, audit
 from fes_mj.verification.references import Curves, differences, exact_curves
 from fes_mj.verification.refinement import Refinement, refine
+
+# Of Case.summary, what a table of runs shows.
+_ROW = (
+    *("design", "group", "cadence_rpm", "timestep_s", "power_mean_W", "static_power_mean_W", "relative_difference"),
+    *("work_per_turn_J", "loop_gap_max_m"),
+)
 
 
 class Expected(NamedTuple):
@@ -62,18 +67,8 @@ class VerificationCase(Case):
 
     def row(self) -> dict[str, Any]:
         """The case as the row of a table of runs."""
-        run, static = self.simulation, self.static
-        return {
-            "design": self.design.name,
-            "group": self.moments.name,
-            "cadence_rpm": self.cadence / RPM,
-            "timestep_s": run.timestep,
-            "power_mean_W": run.power_mean,
-            "numerical_uncertainty_W": self.uncertainty,
-            "static_power_mean_W": static.power_mean,
-            "relative_difference": self.relative_difference,
-            "work_per_turn_J": static.work_per_turn,
-            "loop_gap_max_m": run.loop_gap_max,
+        return {key: value for key, value in self.summary().items() if key in _ROW} | {
+            "numerical_uncertainty_W": self.uncertainty
         }
 
     def as_json(self) -> dict[str, Any]:

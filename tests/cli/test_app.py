@@ -201,7 +201,7 @@ def test_the_command_and_the_module_are_the_same_thing() -> None:
 
 
 def test_public_names() -> None:
-    for name in ("load_design", "load_moments", "quasi_static", "build_mjcf", "simulate", "cross_check"):
+    for name in ("load_design", "load_moments", "quasi_static", "build_mjcf", "simulate", "Case"):
         assert callable(getattr(fes_mj, name))
     with pytest.raises(AttributeError, match="no attribute 'dance'"):
         _ = fes_mj.dance

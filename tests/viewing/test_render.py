@@ -80,8 +80,9 @@ def test_the_wheel_serves_where_the_system_has_nothing(tmp_path: Path) -> None:
     except PackageNotFoundError:
         pytest.skip("the OSMesa wheel is not installed")
     script = (
-        "import sys; from fes_mj.viewing import headless, render; headless._works = lambda _: False; render.FRAMES = 2; "
-        "from fes_mj.cli.app import run; sys.exit(run(['simulate', 'd1', '-q', '--render', sys.argv[1]]))"
+        "import sys; from fes_mj.viewing import headless, render; headless._works = lambda _: False; "
+        "render.FRAMES = 2; from fes_mj.cli.app import run; "
+        "sys.exit(run(['simulate', 'd1', '-q', '--render', sys.argv[1]]))"
     )
     path = tmp_path / "out.mp4"
     clean = {key: value for key, value in os.environ.items() if key not in ("MUJOCO_GL", "PYOPENGL_PLATFORM")}

@@ -1,0 +1,31 @@
+"""Tables with the titles, columns and notes of data/captions.toml."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cache
+from typing import Any
+
+from fes_mj.files import Section, read_toml
+from fes_mj.paper.printed import DATA
+from fes_mj.table import Table
+
+
+@cache
+def _captions() -> Section:
+    return read_toml(DATA / "captions.toml", "captions")
+
+
+def captioned(name: str, rows: list[tuple[Any, ...]], **values: Sequence[str] | str) -> Table:
+    """The table of this name. values: texts that its title, note or column names have in braces.
+
+    A column with a list in its braces is repeated for each.
+    """
+    caption, columns = _captions().section(name).content, {}
+    for column in caption["columns"]:
+        title, _, form = column.partition(" @")
+        key = title.partition("{")[2].partition("}")[0]
+        for value in values[key] if key else [""]:
+            columns[title.format(**{key: value})] = form
+    texts = {key: value for key, value in values.items() if isinstance(value, str)}
+    return Table(caption["title"], columns, rows, caption.get("note", "").format(**texts))
