@@ -126,6 +126,19 @@ def read_toml(path: Path, what: str) -> Section:
         raise InputError(f"{path}: not valid TOML: {error}") from None
 
 
+def read_json(path: Path, what: str) -> dict[str, Any]:
+    """A JSON file whose top level is an object. Raises InputError as read_text, and for what is no such file."""
+    try:
+        content = json.loads(read_text(path, what))
+    except InputError:
+        raise
+    except (ValueError, RecursionError) as error:
+        raise InputError(f"{path}: the {what} is not valid JSON: {error}") from None
+    if not isinstance(content, dict):
+        raise InputError(f"{path}: the {what} must be a JSON object")
+    return content
+
+
 def read_csv(path: Path, what: str, columns: Sequence[str]) -> Iterator[tuple[int, list[float]]]:
     """Line number and finite numbers of every row of a CSV file with this header; blank lines are passed over.
 

@@ -10,7 +10,7 @@ from fes_mj.errors import InputError, UnstableError, require_extra
 
 Task = TypeVar("Task")
 Outcome = TypeVar("Outcome")
-_PATIENCE = "5s"  # for a scheduler to answer
+PATIENCE = "5s"  # for a scheduler to answer
 
 
 class Workers(NamedTuple):
@@ -58,7 +58,7 @@ def _backend(joblib: Any, workers: Workers) -> AbstractContextManager[Any]:
         return joblib.parallel_config(backend="loky", n_jobs=workers.jobs, inner_max_num_threads=1)
     distributed = require_extra("cluster", "distributed")
     try:
-        client = distributed.Client(workers.cluster, timeout=_PATIENCE, set_as_default=False)
+        client = distributed.Client(workers.cluster, timeout=PATIENCE, set_as_default=False)
     except (OSError, TimeoutError, ValueError) as error:
         raise InputError(
             f"--cluster {workers.cluster}: no Dask scheduler answers there ({type(error).__name__}); "

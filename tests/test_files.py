@@ -7,7 +7,7 @@ import pytest
 
 from fes_mj import files
 from fes_mj.errors import InputError
-from fes_mj.files import Section, csv_text, read_csv, read_text, read_toml
+from fes_mj.files import Section, csv_text, read_csv, read_json, read_text, read_toml
 
 
 def _section(tmp_path: Path, text: str) -> Section:
@@ -81,3 +81,19 @@ def test_a_table_reads_back(tmp_path: Path) -> None:
     path = tmp_path / "t.csv"
     path.write_text(csv_text({"a": [1.0, 2.5], "b": [0.1, -3e-12]}))
     assert [row for _, row in read_csv(path, "table", ("a", "b"))] == [[1.0, 0.1], [2.5, -3e-12]]
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("", "not valid JSON"),
+        ('{"a": ', "not valid JSON"),
+        ("[1]", "must be a JSON object"),
+        ("[" * 99999, "not valid"),
+    ],
+)
+def test_damaged_json_is_refused(text: str, words: str, tmp_path: Path) -> None:
+    path = tmp_path / "study.json"
+    path.write_text(text)
+    with pytest.raises(InputError, match=words):
+        read_json(path, "record")

@@ -18,7 +18,7 @@ from fes_mj.cycles import WorkTable, cycles
 from fes_mj.design import Design
 from fes_mj.design_file import design_toml
 from fes_mj.errors import InputError, UnstableError, require_extra
-from fes_mj.files import replacing, write_text
+from fes_mj.files import read_json, replacing, write_text
 from fes_mj.joints import JOINTS
 from fes_mj.moments import JointMoments
 from fes_mj.parallel import HERE, Workers, run_tasks
@@ -54,7 +54,7 @@ class Sweep:
                 raise InputError(f"{self.folder}: this folder is not empty and holds no study; name a new one")
             write_text(manifest, json.dumps(ours, indent=1))
             return
-        theirs = json.loads(manifest.read_text(encoding="utf-8"))
+        theirs = read_json(manifest, "record of the study")
         different = [key for key in ours if ours[key] != theirs.get(key)]
         if different:
             raise InputError(

@@ -19,6 +19,7 @@ from fes_mj.files import read_toml
 from fes_mj.joints import PerJoint
 from fes_mj.kinematics import Jet, Motion, Rotation
 from fes_mj.reference_tricycle import PAPER_TRICYCLE
+from fes_mj.simulation.mjcf import SERVO, SERVO_GAIN
 from fes_mj.statics import equilibrium, joint_couples, moment_arm
 from fes_mj.torque_map import GRID, TorqueMap
 from fes_mj.variables import ALL
@@ -133,70 +134,33 @@ class LateFeedback(TorqueMap):
 # MuJoCo model
 
 
-def in_model(change: Callable[[Any], None]) -> Steps:
-    return {"edit_model": lambda _, spec: change(spec)}
+def in_model(kind: str, name: str = "", **changes: Any) -> Steps:
+    """Change attributes of the elements of a kind ("bodies", "joints", ...), of all or of the one with this name.
+
+    changes: a new value, or a function of the old one. The kind "option" and "compiler" are elements themselves.
+    """
+
+    def edit(_: Case, spec: Any) -> None:
+        found = getattr(spec, kind)
+        for element in found if hasattr(found, "__len__") else [found]:
+            for attribute, new in changes.items() if name in ("", getattr(element, "name", "")) else ():
+                setattr(element, attribute, new(getattr(element, attribute)) if callable(new) else new)
+
+    return {"edit_model": edit}
 
 
-def set_loops(**attributes: Any) -> Steps:
-    def change(spec: Any) -> None:
-        for equality in spec.equalities:
-            for name, value in attributes.items():
-                setattr(equality, name, value)
-
-    return in_model(change)
-
-
-def set_option(name: str, value: Any) -> Steps:
-    return in_model(lambda spec: setattr(spec.option, name, value))
-
-
-def set_gear(actuator: str, factor: float) -> Steps:
-    def change(spec: Any) -> None:
-        spec.actuator(actuator).gear[0] *= factor
-
-    return in_model(change)
-
-
-def weak_servo(spec: Any) -> None:
-    servo = spec.actuator("crank_servo")
-    servo.gainprm[0], servo.biasprm[2] = 20.0, -20.0
-
-
-def heavy_thigh(spec: Any) -> None:
-    thigh = spec.body("thigh")
-    thigh.mass *= 2
-    thigh.inertia = 2 * thigh.inertia
-
-
-def tilted_hinge(spec: Any) -> None:
-    tilt = math.radians(0.1)
-    spec.joint("knee").axis = (math.sin(tilt), math.cos(tilt), 0.0)
-
-
-def pins_apart(spec: Any) -> None:
-    spec.site("shank_pedal").pos[1] = 1e-3
-
-
-def long_thigh(spec: Any) -> None:
-    spec.body("shank").pos[0] *= 1.01
-
-
-def damped(spec: Any) -> None:
-    for joint in spec.joints:
-        joint.damping[0] = 0.01
-
-
-def six_digits(spec: Any) -> None:
-    spec.compiler.savecompiled = spec.compiler.savecanonical = True
+def times(*factors: float) -> Callable[[FloatArray], FloatArray]:
+    """The first numbers of an array, times these factors."""
+    return lambda values: values * np.append(factors, np.ones(len(values) - len(factors)))
 
 
 def in_keyframe(field: str, joint: str, change: Callable[[float], float]) -> Steps:
-    def edit(spec: Any) -> None:
+    def edit(_: Case, spec: Any) -> None:
         place = [each.name for each in spec.joints].index(joint)  # hinges only: one coordinate each
         values = getattr(spec.keys[0], field)
         values[place] = change(values[place])
 
-    return in_model(edit)
+    return {"edit_model": edit}
 
 
 # Simulation
@@ -232,7 +196,7 @@ def in_linkage(**changes: Callable[[float], float]) -> Callable[[Design], Design
 
 
 _SEAT_OF_TRT = PAPER_TRICYCLE.design.linkage.seat_angle
-_IMPLICIT = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
+_TILT = math.radians(0.1)
 
 # Step of the pipeline -> what takes its place, by the name of the fault in data/faults.toml.
 STEPS: dict[str, Steps] = {
@@ -247,22 +211,22 @@ STEPS: dict[str, Steps] = {
     "boot_forgotten": in_map(BootForgotten),
     "open_table": in_map(OpenTable),
     "late_feedback": in_map(LateFeedback),
-    "length_in_model": in_model(long_thigh),
-    "default_solref": set_loops(solref=(0.02, 1.0)),
-    "soft_loops": set_loops(solref=(0.002, 1.0)),
-    "loop_inactive": set_loops(active=False),
-    "pins_apart": in_model(pins_apart),
-    "weak_servo": in_model(weak_servo),
-    "wrong_integrator": set_option("integrator", _IMPLICIT),
-    "gravity_axis": set_option("gravity", (-9.81, 0.0, 0.0)),
-    "tilted_hinge": in_model(tilted_hinge),
-    "heavy_thigh": in_model(heavy_thigh),
-    "damping": in_model(damped),
-    "degrees": set_gear("knee", math.degrees(1)),
-    "reversed_motor": set_gear("hip", -1),
+    "length_in_model": in_model("bodies", "shank", pos=times(1.01)),
+    "default_solref": in_model("equalities", solref=(0.02, 1.0)),
+    "soft_loops": in_model("equalities", solref=(0.002, 1.0)),
+    "loop_inactive": in_model("equalities", active=False),
+    "pins_apart": in_model("sites", "shank_pedal", pos=lambda pos: (pos[0], 1e-3, pos[2])),
+    "weak_servo": in_model("actuators", SERVO, gainprm=times(20 / SERVO_GAIN), biasprm=times(1, 1, 20 / SERVO_GAIN)),
+    "wrong_integrator": in_model("option", integrator=mujoco.mjtIntegrator.mjINT_IMPLICITFAST),
+    "gravity_axis": in_model("option", gravity=(-9.81, 0.0, 0.0)),
+    "tilted_hinge": in_model("joints", "knee", axis=(math.sin(_TILT), math.cos(_TILT), 0.0)),
+    "heavy_thigh": in_model("bodies", "thigh", mass=lambda mass: 2 * mass, inertia=lambda inertia: 2 * inertia),
+    "damping": in_model("joints", damping=(0.01, 0.0, 0.0)),
+    "degrees": in_model("actuators", "knee", gear=times(math.degrees(1))),
+    "reversed_motor": in_model("actuators", "hip", gear=times(-1)),
     "stale_keyframe": in_keyframe("qpos", "crank", lambda angle: angle + math.radians(5)),
     "reversed_start": in_keyframe("qvel", "hip", lambda speed: -speed),
-    "six_digits": in_model(six_digits),
+    "six_digits": in_model("compiler", savecompiled=True, savecanonical=True),
     "late_torque": {"run": late_torque},
     "turn_and_a_half": {"run": half_a_turn_more},
     "no_pre_roll": {"run": without_pre_roll},

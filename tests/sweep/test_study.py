@@ -122,6 +122,12 @@ def test_a_folder_of_another_study_is_left_alone(study: Path, tmp_path: Path) ->
     assert {path.name: path.read_bytes() for path in folder.iterdir()} == before
 
 
+def test_a_damaged_record_of_the_study_is_one_message(study: Path, tmp_path: Path) -> None:
+    (tmp_path / "study.json").write_text('{"chunk": ')
+    with pytest.raises(InputError, match=r"study\.json: the record of the study is not valid JSON"):
+        Sweep(load_study(study), tmp_path).run()
+
+
 def test_a_folder_of_something_else_is_left_alone(study: Path, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="not empty and holds no study"):
         Sweep(load_study(study), tmp_path).run()
@@ -199,9 +205,10 @@ def test_a_study_without_turning_points_has_no_best(tmp_path: Path, capsys: pyte
 
 @pytest.mark.parametrize("address", ["tcp://127.0.0.1:9", "nonsense"])
 def test_no_scheduler_loses_nothing(
-    study: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], address: str
+    study: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, address: str
 ) -> None:
     pytest.importorskip("distributed")
+    monkeypatch.setattr("fes_mj.parallel.PATIENCE", "1s")
     folder = tmp_path / "out"
     sweep = Sweep(load_study(study), folder)
     sweep.run()
