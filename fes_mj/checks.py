@@ -12,6 +12,9 @@ from fes_mj.errors import InputError
 from fes_mj.files import read_toml
 
 _FILE = Path(__file__).parent / "data" / "checks.toml"
+# A leg that delivers less than this is held to the limits of this much: what discretisation leaves behind does not
+# vanish with the mean, the masses swing a hundred watts to and fro all the same.
+LEAST_POWER = 10.0  # W
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ import numpy as np
 
 from fes_mj import kinematics
 from fes_mj.arrays import ComplexArray, FloatArray
-from fes_mj.checks import Check, check
+from fes_mj.checks import LEAST_POWER, Check, check
 from fes_mj.design import Design
 from fes_mj.files import csv_text
 from fes_mj.geometry import require_assembly
@@ -26,9 +26,6 @@ from fes_mj.simulation.mjcf import build_mjcf
 from fes_mj.statics import TURN_POINTS, Load, QuasiStatic, equilibrium, virtual_work
 from fes_mj.torque_map import TorqueMap, torque_map
 
-# A leg that delivers less than this is held to the limits of this much: what discretisation leaves behind does not
-# vanish with the mean, the masses swing a hundred watts to and fro all the same.
-LEAST_POWER = 10.0  # W
 # The near-massless variant keeps so much of all masses that inertia adds this power to the quasi-static curve. With
 # less, the loops, whose stiffness MuJoCo scales with the masses, give way to the jumps of the torque map.
 INERTIA_POWER_RMS = 0.03  # W

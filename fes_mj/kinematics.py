@@ -164,11 +164,11 @@ def _carried(origin: Jet, arm: ComplexArray, rotation: Rotation) -> Jet:
 def _dyad_rates(start: Jet, end: Jet, joint: ComplexArray) -> tuple[Jet, Rotation, Rotation]:
     """Jet of a dyad's joint, and the rotation of its links at `start` and at `end`."""
     arm1, arm2 = joint - start.value, joint - end.value
-    cross = _cross(arm1, arm2)
+    area = cross(arm1, arm2)
     relative = end.first - start.first
-    first1, first2 = _dot(relative, arm2) / cross, _dot(relative, arm1) / cross
+    first1, first2 = _dot(relative, arm2) / area, _dot(relative, arm1) / area
     relative = end.second - start.second + first1**2 * arm1 - first2**2 * arm2
-    second1, second2 = _dot(relative, arm2) / cross, _dot(relative, arm1) / cross
+    second1, second2 = _dot(relative, arm2) / area, _dot(relative, arm1) / area
     rotation1, rotation2 = Rotation(first1, second1), Rotation(first2, second2)
     return _carried(start, arm1, rotation1), rotation1, rotation2
 
@@ -177,5 +177,6 @@ def _dot(a: ComplexArray, b: ComplexArray) -> FloatArray:
     return (np.conj(a) * b).real
 
 
-def _cross(a: ComplexArray, b: ComplexArray) -> FloatArray:
+def cross(a: ComplexArray, b: ComplexArray) -> FloatArray:
+    """Z component of the cross product of planar vectors."""
     return (np.conj(a) * b).imag

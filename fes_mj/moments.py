@@ -10,7 +10,7 @@ import numpy as np
 
 from fes_mj.arrays import FloatArray
 from fes_mj.errors import InputError
-from fes_mj.files import csv_text, read_csv
+from fes_mj.files import read_csv
 from fes_mj.joints import PerJoint
 from fes_mj.reference_tricycle import PAPER_TRICYCLE, ReferenceTricycle
 from fes_mj.torque_velocity import TorqueVelocity
@@ -58,12 +58,6 @@ def load_moments(source: str | Path = "p1p2") -> JointMoments:
         with np.load(path.with_suffix(".npz")) as stored:
             return replace(_read(path), covariance=stored["covariance"])
     return _read(Path(source))
-
-
-def moments_csv(moments: JointMoments) -> str:
-    """The text of a CSV file that load_moments reads, to the digits of csv_text."""
-    values = (np.degrees(moments.crank_angle), moments.knee, moments.hip)
-    return csv_text(dict(zip(COLUMNS, values, strict=True)))
 
 
 def _read(path: Path) -> JointMoments:

@@ -5,4 +5,3 @@ from __future__ import annotations
 import math
 
 RPM = math.pi / 30  # rad/s per rpm
-KMH = 1 / 3.6  # m/s per km/h

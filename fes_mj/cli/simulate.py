@@ -13,6 +13,7 @@ from fes_mj.cli.static import force_rows, heading, print_notes, rows, span, with
 from fes_mj.console import number, output, print_table, say, verdict
 from fes_mj.errors import InputError
 from fes_mj.files import json_text, require_folder, require_writable, write_text
+from fes_mj.time_step import LONGEST_TIMESTEP
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
     from fes_mj.crosscheck import Case
 
 _DEFAULTS = RunOptions()
-LONGEST_TIMESTEP = 0.02  # s
 MOST_TURNS = 1000
 
 

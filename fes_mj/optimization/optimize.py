@@ -5,33 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
-from typing import TypeAlias
 
 import numpy as np
 
-from fes_mj.arrays import FloatArray
 from fes_mj.errors import InputError
-from fes_mj.optimization.evolution import cma_es, differential
+from fes_mj.optimization.methods import BUDGETS, METHODS, Start
 from fes_mj.optimization.problem import Problem
-from fes_mj.optimization.random_pursuit import random_pursuit
-from fes_mj.optimization.search import BudgetSpentError, Result, Search, feasible_start, require_feasible
+from fes_mj.optimization.search import BudgetSpentError, Result, Search, require_feasible
 from fes_mj.parallel import HERE, Workers, run_tasks
-
-Start: TypeAlias = FloatArray | None
-
-
-def _pursue(search: Search, start: Start, random: np.random.Generator) -> None:
-    random_pursuit(search, feasible_start(search, random) if start is None else start, random)
-
-
-Method: TypeAlias = Callable[[Search, Start, np.random.Generator], None]
-METHODS: dict[str, Method] = {
-    "differential-evolution": differential,
-    "cma-es": cma_es,
-    "random-pursuit": _pursue,
-}
-# Of one search. Random pursuit stops by itself, after 0.04 to 1 million trials.
-BUDGETS = {"differential-evolution": 50_000, "cma-es": 50_000, "random-pursuit": 5_000_000}
 
 
 @dataclass(frozen=True)

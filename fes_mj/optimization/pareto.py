@@ -19,7 +19,6 @@ from fes_mj.torque_map import torque_map
 from fes_mj.variables import LENGTHS
 
 POPULATION = 100
-_UNKNOWN = 10.0  # scales; for the margins of a design refused before they were computed
 
 
 @dataclass(frozen=True)
@@ -75,7 +74,7 @@ def pareto_front(
                 if feasible.any():
                     goals[-1][feasible] = fluctuation(take(batch, feasible), moments[0])
             out["F"] = np.column_stack(goals)
-            out["G"] = -np.nan_to_num(evaluation.margins / evaluation.scales, nan=-_UNKNOWN)
+            out["G"] = -evaluation.scaled_margins
 
     result = minimize(Population(), NSGA2(pop_size=POPULATION), ("n_eval", budget), seed=seed, verbose=False)
     if result.X is None:

@@ -60,9 +60,14 @@ class Evaluation:
         return np.all(self.margins >= 0, axis=1)
 
     @property
+    def scaled_margins(self) -> FloatArray:
+        """Margins in their scales, shape (n, constraints), none of them NaN."""
+        return np.nan_to_num(self.margins / self.scales, nan=-_UNKNOWN)
+
+    @property
     def violation(self) -> FloatArray:
         """Sum of all violations in their scales, shape (n,); zero for feasible designs."""
-        return np.where(np.isnan(self.margins), _UNKNOWN, np.maximum(0, -self.margins) / self.scales).sum(axis=1)
+        return np.maximum(0, -self.scaled_margins).sum(axis=1)
 
 
 @dataclass(frozen=True)

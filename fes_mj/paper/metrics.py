@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -57,13 +57,6 @@ def distribution_table(runs: Runs) -> Table:
     return captioned("distribution", rows)
 
 
-class Criterion(NamedTuple):
-    """A criterion of Section 7: what is measured, and its value of a design (large is good)."""
-
-    title: str
-    value: Callable[[list[QuasiStatic]], float]
-
-
 def ranking_table(runs: Runs, posteriors: dict[str, Posterior]) -> Table:
     """A ranking with stated weights, and how much it depends on them."""
     results = {name: [runs.static[name, group] for group in GROUPS] for name in _by_design(runs)}
@@ -74,15 +67,15 @@ def ranking_table(runs: Runs, posteriors: dict[str, Posterior]) -> Table:
         )
         return -float(np.mean([*costs]))
 
-    criteria = (
-        Criterion("power: mean of both groups", lambda pair: float(np.mean([r.power_mean for r in pair]))),
-        Criterion("size: length x height", lambda pair: -float(np.prod(extent(pair[0].motion)))),
-        Criterion("transmission: smallest angle", lambda pair: min(transmission_angles(pair[0].motion).values())),
-        Criterion("continuity: loss by 5 deg of smoothing", smoothing_loss),
-        Criterion("inactive zone", lambda pair: -float(np.mean([inactive_share(r.power) for r in pair]))),
-        Criterion("peak per mean", lambda pair: -float(np.mean([r.power.max() / r.power_mean for r in pair]))),
-    )
-    values = np.array([[criterion.value(pair) for criterion in criteria] for pair in results.values()])
+    criteria: dict[str, Callable[[list[QuasiStatic]], float]] = {  # large is good
+        "power: mean of both groups": lambda pair: float(np.mean([r.power_mean for r in pair])),
+        "size: length x height": lambda pair: -float(np.prod(extent(pair[0].motion))),
+        "transmission: smallest angle": lambda pair: min(transmission_angles(pair[0].motion).values()),
+        "continuity: loss by 5 deg of smoothing": smoothing_loss,
+        "inactive zone": lambda pair: -float(np.mean([inactive_share(r.power) for r in pair])),
+        "peak per mean": lambda pair: -float(np.mean([r.power.max() / r.power_mean for r in pair])),
+    }
+    values = np.array([[value(pair) for value in criteria.values()] for pair in results.values()])
     scores = (values - values.min(axis=0)) / np.ptp(values, axis=0)
     draws = np.random.default_rng(_SEED).dirichlet(np.ones(len(criteria)), _DRAWS)
     wins = np.bincount(np.argmax(draws @ scores.T, axis=1), minlength=len(results)) / _DRAWS
@@ -91,7 +84,7 @@ def ranking_table(runs: Runs, posteriors: dict[str, Posterior]) -> Table:
         (name.upper(), *scores[i], total[i], str(1 + int(np.sum(total > total[i]))), 100 * wins[i])
         for i, name in enumerate(results)
     ]
-    return captioned("ranking", rows, criterion=[criterion.title for criterion in criteria], count=str(len(criteria)))
+    return captioned("ranking", rows, criterion=[*criteria], count=str(len(criteria)))
 
 
 def extent(motion: Motion) -> tuple[float, float]:

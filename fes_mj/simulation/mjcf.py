@@ -220,14 +220,9 @@ def _close_loop(spec: Spec, design: Design, leg: Leg, cut: str, anchors: str) ->
     else:
         equality.objtype, equality.name1, equality.name2 = mujoco.mjtObj.mjOBJ_SITE, sites[0].name, sites[1].name
     # the loop gap, m
-    spec.add_sensor(
-        name=f"{leg.prefix}{cut}_gap",
-        type=mujoco.mjtSensor.mjSENS_FRAMEPOS,
-        objtype=mujoco.mjtObj.mjOBJ_SITE,
-        objname=sites[0].name,
-        reftype=mujoco.mjtObj.mjOBJ_SITE,
-        refname=sites[1].name,
-    )
+    kind, site = mujoco.mjtSensor.mjSENS_FRAMEPOS, mujoco.mjtObj.mjOBJ_SITE
+    gap = spec.add_sensor(name=f"{leg.prefix}{cut}_gap", type=kind, objtype=site, reftype=site)
+    gap.objname, gap.refname = (each.name for each in sites)
 
 
 def _add_motors(spec: Spec, legs: tuple[Leg, ...]) -> None:
@@ -248,18 +243,11 @@ def _hold_cadence(spec: Spec, integrator: str) -> None:
 
 def _add_sensors(spec: Spec) -> None:
     """The torque between frame and crank, angle and speed of every joint."""
-    spec.add_sensor(
-        name="crank_torque",
-        type=mujoco.mjtSensor.mjSENS_TORQUE,
-        objtype=mujoco.mjtObj.mjOBJ_SITE,
-        objname="crank_torque",
-    )
+    kinds, objects, name = mujoco.mjtSensor, mujoco.mjtObj, "crank_torque"
+    spec.add_sensor(name=name, type=kinds.mjSENS_TORQUE, objtype=objects.mjOBJ_SITE, objname=name)
     for joint in [joint.name for joint in spec.joints]:
-        for quantity, kind in (
-            ("angle", mujoco.mjtSensor.mjSENS_JOINTPOS),
-            ("speed", mujoco.mjtSensor.mjSENS_JOINTVEL),
-        ):
-            spec.add_sensor(name=f"{joint}_{quantity}", type=kind, objtype=mujoco.mjtObj.mjOBJ_JOINT, objname=joint)
+        for quantity, kind in (("angle", kinds.mjSENS_JOINTPOS), ("speed", kinds.mjSENS_JOINTVEL)):
+            spec.add_sensor(name=f"{joint}_{quantity}", type=kind, objtype=objects.mjOBJ_JOINT, objname=joint)
 
 
 def _add_keyframe(spec: Spec, state: dict[str, tuple[float, float]]) -> None:

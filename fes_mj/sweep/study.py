@@ -16,6 +16,7 @@ from fes_mj.design_file import load_design
 from fes_mj.errors import InputError
 from fes_mj.files import Section, is_number, read_toml
 from fes_mj.moments import JointMoments, load_moments
+from fes_mj.time_step import LONGEST_TIMESTEP
 from fes_mj.variables import COMPONENTS
 
 ANALYSES = ("static", "dynamic")
@@ -23,7 +24,6 @@ ANALYSES = ("static", "dynamic")
 DEFAULT_CHUNK = {"static": 20_000, "dynamic": 1000}
 MOST_POINTS = 10**9
 MOST_VALUES = 10**6  # of one axis, or of the sample: they are held in memory
-LONGEST_TIMESTEP = 0.02  # s
 _TABLES = {
     "study": ("analysis", "chunk", "timestep"),
     "grid": ("design", "moments", *COMPONENTS),

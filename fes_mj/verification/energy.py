@@ -9,7 +9,7 @@ import numpy as np
 from fes_mj.arrays import FloatArray
 from fes_mj.crosscheck import Case
 from fes_mj.design import ONE_LEG
-from fes_mj.simulation.bench import joint_drives
+from fes_mj.simulation.bench import Energy, joint_drives
 from fes_mj.simulation.mjcf import SERVO
 from fes_mj.simulation.sensors import Sensors
 from fes_mj.simulation.stepping import recording_loop, run_loop
@@ -17,17 +17,13 @@ from fes_mj.time_step import steps_per_turn
 
 
 @dataclass(frozen=True)
-class Audit:
+class Audit(Energy):
     """Whole turns of one leg: joint_work = crank_work + kinetic + potential + damping - constraint_work + integration.
 
     Works in J. crank_moment is the torque sensor's, servo_moment what the servo applied, N m at crank_angle (rad),
     shape (steps - 1,).
     """
 
-    joint_work: float
-    crank_work: float
-    kinetic: float  # change
-    potential: float  # change
     damping: float  # taken by passive forces
     constraint_work: float  # done by the loops
     crank_angle: FloatArray
@@ -37,7 +33,7 @@ class Audit:
     @property
     def integration(self) -> float:
         """What the other terms leave: the error of the time step."""
-        return self.joint_work - self.crank_work - self.kinetic - self.potential - self.damping + self.constraint_work
+        return self.lost - self.damping + self.constraint_work
 
     @property
     def terms(self) -> dict[str, float]:

@@ -7,12 +7,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fes_mj.arrays import BoolArray, ComplexArray, FloatArray
+from fes_mj.arrays import BoolArray
 from fes_mj.checks import Check
 from fes_mj.crosscheck import Case
 from fes_mj.design import BODIES
 from fes_mj.joints import JOINTS
-from fes_mj.kinematics import Motion
+from fes_mj.kinematics import Motion, cross
 
 # The catalogue is resolved to rounding by 512 points; linkages closer to a dead centre turn faster there.
 POINTS = 2048
@@ -45,15 +45,11 @@ def closure_error(motion: Motion) -> float:
 def wrong_branch(motion: Motion) -> float:
     """Number of crank angles at which a dyad is assembled the other way round."""
     point = {name: jet.value for name, jet in motion.points.items()}
-    wrong: BoolArray = ~(_cross(point["pedal"] - point["hip"], point["knee"] - point["hip"]) < 0)
+    wrong: BoolArray = ~(cross(point["pedal"] - point["hip"], point["knee"] - point["hip"]) < 0)
     if "rocker_joint" in point:
         pivot = point["rocker_pivot"]
-        wrong |= ~(_cross(point["crank_pin"] - pivot, point["rocker_joint"] - pivot) > 0)
+        wrong |= ~(cross(point["crank_pin"] - pivot, point["rocker_joint"] - pivot) > 0)
     return float(np.sum(wrong))
-
-
-def _cross(a: ComplexArray, b: ComplexArray) -> FloatArray:
-    return a.real * b.imag - a.imag * b.real
 
 
 def rate_errors(motion: Motion) -> tuple[float, float]:

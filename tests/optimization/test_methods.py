@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 import fes_mj
+from fes_mj.optimization.methods import STEP, random_pursuit
 from fes_mj.optimization.optimize import METHODS, optimize
 from fes_mj.optimization.pareto import fluctuation, pareto_front
-from fes_mj.optimization.random_pursuit import STEP, random_pursuit
 from fes_mj.optimization.search import BudgetSpentError, Search, feasible_start
 from fes_mj.optimization.tolerance import to_manufacturing, to_rider
 from fes_mj.statics import quasi_static
