@@ -1,7 +1,5 @@
 """Physics-simulation check of pedalling linkages for FES cycling. The public names, one a line."""
 
-from __future__ import annotations
-
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 

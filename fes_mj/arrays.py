@@ -1,7 +1,5 @@
 """Array types. A shape stands in each docstring; "batch" is one row per design, shape (designs, crank angles)."""
 
-from __future__ import annotations
-
 from typing import Any, TypeAlias
 
 import numpy as np

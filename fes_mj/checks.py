@@ -1,7 +1,5 @@
 """Every check of the harness by name: its limit and why, what it guards against, what usually breaks it."""
 
-from __future__ import annotations
-
 import difflib
 from dataclasses import dataclass
 from functools import cache

@@ -1,7 +1,5 @@
 """What people see on a terminal: aligned tables, and progress on standard error."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import TypeVar

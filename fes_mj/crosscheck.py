@@ -1,7 +1,5 @@
 """Dynamic against static: one measured case, what is compared in it, the limits, the verdict."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from functools import cached_property
 from importlib.metadata import version

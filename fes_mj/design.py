@@ -5,8 +5,6 @@ angles counter-clockwise. The symbols R1 ... R10, gamma, lambda and theta_b are 
 Robotics 2022, 11(1), 26; outside this module and the design files, words are used instead.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Any

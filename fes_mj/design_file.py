@@ -1,7 +1,5 @@
 """Design files: TOML in metres and degrees, read and written; the paper's designs are a folder of them."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """The ways a request can be refused; the command line turns each into one message and an exit code."""
 
-from __future__ import annotations
-
 from importlib import import_module
 from types import ModuleType
 

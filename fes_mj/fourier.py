@@ -1,7 +1,5 @@
 """The Fourier series that carries the recovered moments' uncertainty. Needs numpy alone: statics stay instant."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

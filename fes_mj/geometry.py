@@ -1,7 +1,5 @@
 """A linkage before any force acts: does it close, how far do its joints go, how well does it transmit?"""
 
-from __future__ import annotations
-
 import numpy as np
 
 from fes_mj.arrays import FloatArray

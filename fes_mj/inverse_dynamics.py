@@ -1,7 +1,5 @@
 """The exact massive reference at constant crank speed: d'Alembert loads on the quasi-static model. No MuJoCo."""
 
-from __future__ import annotations
-
 from fes_mj.arrays import FloatArray
 from fes_mj.kinematics import Motion
 from fes_mj.segments import GRAVITY, inertias

@@ -1,7 +1,5 @@
 """Joint moments of riders over the crank angle of the tricycle they were measured on, and their CSV files."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Independent tasks on this machine's cores (joblib, loky) or on a Dask cluster, through one function."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, ExitStack
 from typing import Any, NamedTuple, TypeVar

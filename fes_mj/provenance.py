@@ -1,7 +1,5 @@
 """Where a result comes from: versions, command, inputs. No date: the same run gives the same bytes."""
 
-from __future__ import annotations
-
 import hashlib
 import platform
 import sys

@@ -4,8 +4,6 @@ A traditional tricycle is a four-bar of frame, crank, shank and thigh, so the qu
 knee and hip, and the torque map needs no table over joint angle.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Mass, centre of mass and inertia of every moving body, each in its own frame (origin, x axis to the tip)."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Quasi-static crank moment and joint reactions: free-body equilibrium, and virtual work beside it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property

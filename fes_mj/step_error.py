@@ -1,7 +1,5 @@
 """The error of the simulation's time step in closed form: the scheme's own poses, differenced, without MuJoCo."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import NamedTuple
 

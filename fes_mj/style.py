@@ -3,8 +3,6 @@
 Matplotlib users apply STYLE with matplotlib.rc_context; matplotlib itself is not imported here.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 # What is plotted

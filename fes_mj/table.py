@@ -1,7 +1,5 @@
 """A table as data: written as Markdown for people and as JSON for programs."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 

@@ -1,7 +1,5 @@
 """How many time steps a turn takes, chosen from design and cadence before anything is simulated."""
 
-from __future__ import annotations
-
 import math
 from functools import lru_cache
 

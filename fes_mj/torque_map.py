@@ -4,8 +4,6 @@ The map (paper, Section 4) answers: at which crank angle did the tricycle of the
 angle, moving in this direction? The moment measured there is the moment delivered here.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from functools import cached_property, lru_cache, partial

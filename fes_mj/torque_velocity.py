@@ -1,7 +1,5 @@
 """How a joint's moment changes with its speed: Hill's hyperbola. Off by default, as in the paper."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path

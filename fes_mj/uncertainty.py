@@ -4,8 +4,6 @@ Mean power is linear in the two moment curves, hence in their Fourier coefficien
 in their covariance. Two designs under the same curves have correlated powers; their ratio is surer than either.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

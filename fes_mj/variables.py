@@ -4,8 +4,6 @@ Design files, studies, problem files, identification and optimiser all read it. 
 components there, R1x and R1y.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace

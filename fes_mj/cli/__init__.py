@@ -1,7 +1,5 @@
 """The command line. This module answers what needs no computing and hands everything else to cli.app."""
 
-from __future__ import annotations
-
 import os
 import sys
 

@@ -1,7 +1,5 @@
 """Parsing a command line, running the command, and the exit code that says how it went."""
 
-from __future__ import annotations
-
 import os
 import sys
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """`fes_mj explain`: what a check guards against and what usually breaks it."""
 
-from __future__ import annotations
-
 from fes_mj.checks import definitions, find
 from fes_mj.console import number, print_table, say
 

@@ -1,7 +1,5 @@
 """`fes_mj export`: the MJCF model of a design and its turn as a table, for other tools."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated, Literal
 

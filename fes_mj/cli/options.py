@@ -1,7 +1,5 @@
 """Options that several commands share, and what they load."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Literal, NamedTuple

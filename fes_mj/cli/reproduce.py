@@ -1,7 +1,5 @@
 """`fes_mj reproduce`: the paper's tables and figures beside the project's."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated
 

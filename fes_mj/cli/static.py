@@ -1,7 +1,5 @@
 """`fes_mj static`: the quasi-static solver alone."""
 
-from __future__ import annotations
-
 import sys
 from typing import Annotated, Any
 

@@ -1,7 +1,5 @@
 """`fes_mj sweep`: many designs, riders, cadences and moments; killed and started again, it goes on where it was."""
 
-from __future__ import annotations
-
 import os
 import sys
 import time

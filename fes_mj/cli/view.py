@@ -1,7 +1,5 @@
 """`fes_mj view`: the model in MuJoCo's interactive viewer."""
 
-from __future__ import annotations
-
 import os
 import sys
 

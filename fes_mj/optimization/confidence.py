@@ -4,8 +4,6 @@ Powers of two designs under the posterior of the moments are correlated: what co
 of their difference. An optimiser seeks out what the evidence leaves open, so its gains have wide ones.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -3,8 +3,6 @@
 The evolutionary ones vary the nine lengths; the gear ratio follows from the joint speeds.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any, TypeAlias
 

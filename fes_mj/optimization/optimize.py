@@ -1,7 +1,5 @@
 """One call for every single-objective method: independent searches over seeds, side by side, the best of them."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass

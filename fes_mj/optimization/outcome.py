@@ -1,7 +1,5 @@
 """The outcome of a search: the best design, its constraints, the whole front where there is one; as JSON and files."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """A page on one found design: numbers, motion, power, constraints; HTML with everything inside."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Several objectives at once: power of both groups, and by choice smoothness, by NSGA-II (pymoo)."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

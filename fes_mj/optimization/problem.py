@@ -1,7 +1,5 @@
 """The optimisation problem of the paper's Section 6, once: variables, objective, constraints, for populations."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 from pathlib import Path

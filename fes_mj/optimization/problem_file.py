@@ -1,7 +1,5 @@
 """The limits of the optimisation problem as a TOML file: design space, limits, search ranges."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """What all single-objective methods share: a counted, remembered evaluation, and the result."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TypeAlias

@@ -1,7 +1,5 @@
 """What a design still does when it is not built, or not ridden, as designed: sampled within tolerances."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """What a found design is worth: simulated, compared with the design it had to beat, sampled for tolerance."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

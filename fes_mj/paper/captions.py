@@ -1,7 +1,5 @@
 """Tables with the titles, columns and notes of data/captions.toml."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from functools import cache
 from typing import Any

@@ -1,7 +1,5 @@
 """The evidence on the joint moments: data rows, each a linear functional of the two moment curves."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, fields, replace
 from pathlib import Path

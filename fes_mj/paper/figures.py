@@ -1,7 +1,5 @@
 """The paper's figures from our numbers, and one it lacks."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 from typing import Any, TypeAlias
 

@@ -1,7 +1,5 @@
 """How much of each gain is real: at equal joint speed, with a torque-velocity relation, and how smooth the power is."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

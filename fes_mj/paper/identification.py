@@ -4,8 +4,6 @@ For given seat angle and coupler angle the designs separate: each is a least-squ
 lengths with the eight range limits of Table 1 and the Grashof condition as constraints.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 

@@ -1,7 +1,5 @@
 """The criteria of the paper's Section 7, which it discusses in words, as numbers for all five designs."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

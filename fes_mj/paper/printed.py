@@ -1,7 +1,5 @@
 """What the paper prints, as data."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from fes_mj.files import read_toml

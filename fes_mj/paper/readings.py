@@ -1,7 +1,5 @@
 """The identified dimensions beside the print, and what other readings of the paper would have given."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace

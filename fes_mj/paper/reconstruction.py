@@ -5,8 +5,6 @@ exp(-1 / length^2) I_k(1 / length^2), so the process is Bayesian linear regressi
 a mean and a covariance of 2 x 49 coefficients, and the variance of any power is a quadratic form.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 

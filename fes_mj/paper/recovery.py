@@ -1,7 +1,5 @@
 """How far the recovered moments can be trusted: residuals, predictions of what was left out, sensitivity, checks."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import replace
 from typing import Any

@@ -1,7 +1,5 @@
 """The runs that tables and figures share: every design of the paper under both groups' moments, static and dynamic."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 

@@ -1,7 +1,5 @@
 """Table 1 of the paper beside ours, and what it lacks: work per turn, cadence, joint speeds, the split of each gain."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from fes_mj.moments import GROUPS

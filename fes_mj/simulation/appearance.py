@@ -4,8 +4,6 @@ The links, the pedal and the leg are drawn in layers beside each other, so that 
 themselves all lie in one plane.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import Any, NamedTuple, TypeAlias

@@ -1,7 +1,5 @@
 """The headless run: joint moments fed back from the state, a servo on the crank, power measured on its load side."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from typing import Any

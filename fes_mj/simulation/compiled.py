@@ -1,7 +1,5 @@
 """The simulation's inner loop in machine code (numba): the torque map and mj_step by its C address, without Python."""
 
-from __future__ import annotations
-
 import ctypes
 import math
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """What other tools get: the model as commented MJCF, a scene around it, and its turn as a table (the sidecar)."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 from importlib.metadata import version

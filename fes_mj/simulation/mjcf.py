@@ -5,8 +5,6 @@ counter-clockwise in the paper's view, that is about -y. The joint coordinates a
 phi_h, `knee` is phi_k, `crank` is theta_2.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any, Literal
 

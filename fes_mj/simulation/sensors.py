@@ -1,7 +1,5 @@
 """Sensor rows of a model read by name."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from fes_mj.arrays import FloatArray

@@ -1,7 +1,5 @@
 """Stepping a model with feedback on its joint motors, and what is recorded of it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from copy import copy
 from typing import Any, NamedTuple, TypeAlias

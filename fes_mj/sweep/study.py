@@ -1,7 +1,5 @@
 """Study files: which designs, riders, cadences and moments a sweep goes through, numbered from 0."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from pathlib import Path

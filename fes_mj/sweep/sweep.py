@@ -1,7 +1,5 @@
 """Sweeps: a study evaluated in chunks, each a Parquet file that appears whole; what is there is not done again."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """The measured case of the cross-check with what verification adds: audit, refinement, the paper's printed values."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import cached_property

@@ -1,7 +1,5 @@
 """Energy audit of a simulated turn: where the work of the joint moments went, every term measured on its own."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

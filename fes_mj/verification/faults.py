@@ -4,8 +4,6 @@ The steps of the pipeline are methods of crosscheck.Case. A fault replaces one o
 design; nothing else is touched, so nothing has to be put back.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import fields

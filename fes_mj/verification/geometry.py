@@ -1,7 +1,5 @@
 """The linkage itself: do the links close, on the right branch, and are the rates the derivatives of the positions?"""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

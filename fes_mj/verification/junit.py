@@ -1,7 +1,5 @@
 """The detections as JUnit XML, which every continuous integration reads."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from xml.etree import ElementTree
 

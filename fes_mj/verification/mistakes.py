@@ -1,7 +1,5 @@
 """How the faults of data/faults.toml are made. Each was made in print, in a tool, or nearly in this project."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """The torque map and the MuJoCo model before anything moves: do they say what they were told?"""
 
-from __future__ import annotations
-
 import math
 
 import mujoco

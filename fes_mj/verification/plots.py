@@ -1,7 +1,5 @@
 """The report's figures, as SVG that scales with the page."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import matplotlib as mpl

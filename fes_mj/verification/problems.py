@@ -8,8 +8,6 @@ The four-bar test of the Newton physics engine (newton-physics/newton, test_phys
 one revolution a second for two seconds, its rocker within 0.1 deg of Freudenstein's equation, its loop within 1 mm.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Any

@@ -3,8 +3,6 @@
 Massive methods see masses and weight, massless ones do not; within each family all must agree.
 """
 
-from __future__ import annotations
-
 from itertools import combinations
 from typing import TypeAlias
 

@@ -3,8 +3,6 @@
 The two are varied one at a time: on the softness axis a finer step converges, to the wrong answer.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import asdict, dataclass
 from typing import Any

@@ -1,7 +1,5 @@
 """The report: one HTML file with everything inside, which needs no network."""
 
-from __future__ import annotations
-
 import base64
 import math
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """Which checks are run, in which order: from the linkage over the model to the simulated turn and its refinement."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """Charts that figures, pages and reports share: a linkage in its plane, crank power over the turn, a figure as SVG."""
 
-from __future__ import annotations
-
 import io
 from collections.abc import Sequence
 from typing import Any

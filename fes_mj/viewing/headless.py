@@ -1,7 +1,5 @@
 """OpenGL without a screen: EGL, else the system's OSMesa, else the OSMesa that comes as a Python wheel."""
 
-from __future__ import annotations
-
 import ctypes
 import os
 import subprocess

@@ -1,7 +1,5 @@
 """HTML pages with everything inside, from the templates of the package that shows them."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """The right half of the video: crank power over the turn, dynamic and static, with a cursor that moves."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import matplotlib as mpl

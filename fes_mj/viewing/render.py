@@ -1,7 +1,5 @@
 """The video of a cross-check: the moving legs and linkage beside the crank power over the turn."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any

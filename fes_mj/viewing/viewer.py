@@ -1,7 +1,5 @@
 """A design running in MuJoCo's interactive viewer, under the torque map and the crank servo."""
 
-from __future__ import annotations
-
 import time
 
 import mujoco
