@@ -5,14 +5,10 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from fes_mj.crosscheck import Case as Case
-    from fes_mj.design import Design as Design
-    from fes_mj.design import Linkage as Linkage
-    from fes_mj.design import Rider as Rider
+    from fes_mj.design import Design as Design, Linkage as Linkage, Rider as Rider
     from fes_mj.design_file import load_design as load_design
-    from fes_mj.errors import AssemblyError as AssemblyError
-    from fes_mj.errors import InputError as InputError
-    from fes_mj.moments import JointMoments as JointMoments
-    from fes_mj.moments import load_moments as load_moments
+    from fes_mj.errors import AssemblyError as AssemblyError, InputError as InputError
+    from fes_mj.moments import JointMoments as JointMoments, load_moments as load_moments
     from fes_mj.simulation.bench import simulate as simulate
     from fes_mj.simulation.mjcf import build_mjcf as build_mjcf
     from fes_mj.statics import quasi_static as quasi_static

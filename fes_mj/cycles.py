@@ -4,11 +4,9 @@ The torque map depends on joint angle and direction only, so the virtual work of
 the loops it draws in the moment-angle plane: a sum over its reversals, where nothing but its angle is needed.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -45,7 +43,7 @@ class WorkTable:
         )
 
     @classmethod
-    def of(cls, *moments: JointMoments) -> WorkTable:
+    def of(cls, *moments: JointMoments) -> "WorkTable":
         """Table of the given joint moments, a set each, all measured on the same tricycle."""
         maps = [torque_map(each) for each in moments]
         return cls(
@@ -140,9 +138,7 @@ def take(design: Design, rows: Any) -> Design:
     changes: dict[str, dict[str, Any]] = {"linkage": {}, "rider": {}}
     for owner, name, value in _arrays(design):
         changes[owner][name] = value[rows]
-    return replace(
-        design, linkage=replace(design.linkage, **changes["linkage"]), rider=replace(design.rider, **changes["rider"])
-    )
+    return design.changed(**changes)
 
 
 def _arrays(design: Design) -> Iterator[tuple[str, str, NDArray[Any]]]:

@@ -6,7 +6,8 @@ Robotics 2022, 11(1), 26; outside this module and the design files, words are us
 """
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -116,6 +117,10 @@ class Design:
     name: str
     linkage: Linkage
     rider: Rider = Rider()
+
+    def changed(self, linkage: Mapping[str, Any], rider: Mapping[str, Any]) -> "Design":
+        """The design with these attributes of its linkage and its rider."""
+        return replace(self, linkage=replace(self.linkage, **linkage), rider=replace(self.rider, **rider))
 
     @property
     def knee_to_pedal(self) -> Any:

@@ -1,7 +1,5 @@
 """All reading and writing of files: inputs with one wording for every refusal, outputs whole or not at all."""
 
-from __future__ import annotations
-
 import csv
 import json
 import math
@@ -65,7 +63,7 @@ class Section:
             if key not in self.content:
                 raise InputError(f"{self.path}: {self.label(key)} is missing; {needs}")
 
-    def section(self, key: str) -> Section:
+    def section(self, key: str) -> "Section":
         """A table below this one, empty if it is not there."""
         value = self.content.get(key, {})
         if not isinstance(value, dict):

@@ -1,7 +1,5 @@
 """The two driven joints of a leg, and the pair of values that belongs to them."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Generic, TypeVar
@@ -28,11 +26,11 @@ class PerJoint(Generic[T]):
         """Name and value of each joint."""
         return zip(JOINTS, self, strict=True)
 
-    def map(self, function: Callable[[T], U]) -> PerJoint[U]:
+    def map(self, function: Callable[[T], U]) -> "PerJoint[U]":
         """The pair of function(value)."""
         return PerJoint(function(self.knee), function(self.hip))
 
     @classmethod
-    def of(cls, function: Callable[[str], T]) -> PerJoint[T]:
+    def of(cls, function: Callable[[str], T]) -> "PerJoint[T]":
         """The pair of function(name)."""
         return cls(function("knee"), function("hip"))

@@ -6,8 +6,6 @@ coefficients): velocity = coefficient * crank speed; at constant speed, accelera
 * crank speed squared.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import NamedTuple, TypeAlias
 
@@ -36,7 +34,7 @@ class Rotation(NamedTuple):
     first: FloatArray
     second: FloatArray
 
-    def __sub__(self, other: Rotation) -> Rotation:
+    def __sub__(self, other: "Rotation") -> "Rotation":
         return Rotation(self.first - other.first, self.second - other.second)
 
 

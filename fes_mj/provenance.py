@@ -14,10 +14,7 @@ def provenance(inputs: Iterable[Path] = (), packages: Iterable[str] = ()) -> dic
     return {
         "fes_mj": version("fes-mj"),
         "python": platform.python_version(),
-        "mujoco": version("mujoco"),
-        "numpy": version("numpy"),
-        "scipy": version("scipy"),
-        **{package: version(package) for package in packages},
+        **{package: version(package) for package in ("mujoco", "numpy", "scipy", *packages)},
         "command": " ".join([_program(Path(sys.argv[0])), *sys.argv[1:]]),
         "inputs": {_name(path): hashlib.sha256(path.read_bytes()).hexdigest() for path in inputs},
     }

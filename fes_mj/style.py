@@ -16,13 +16,7 @@ COLOURS = {
     "comparison": "#3a7d44",  # another design beside this one
 }
 # Bodies; the video's materials and the figures' lines
-LINKS = {
-    "thigh": "#cdb399",
-    "shank": "#e0c9b0",
-    "crank": "#e07d28",
-    "rocker": "#736bad",
-    "coupler": "#5c945c",
-}
+LINKS = {"thigh": "#cdb399", "shank": "#e0c9b0", "crank": "#e07d28", "rocker": "#736bad", "coupler": "#5c945c"}
 GOOD, BAD = "#1a7f37", "#c01c28"
 INK, FAINT = "#20242c", "#5a606c"
 

@@ -48,9 +48,7 @@ class TorqueMap:
         """
         source = self.source_angle(joint, angle, rate)
         moment = self.at_source(joint, source)
-        if self.moments.torque_velocity is None:
-            return moment
-        return moment * self._speed_factor(joint, source, moment, rate)
+        return moment if self.moments.torque_velocity is None else moment * self.speed_factor(joint, source, rate)
 
     def along(self, motion: Motion, cadence: float) -> PerJoint[FloatArray]:
         """Knee and hip moment along a motion at a crank speed in rad/s, of which only the size counts, N m."""
@@ -61,15 +59,14 @@ class TorqueMap:
         """Moment in N m at crank angles of the measurement, rad from top dead centre, any shape; speed-free."""
         return _interpolated(self.table[joint], source)
 
-    def speed_factor(self, joint: str, angle: Any, rate: Any) -> FloatArray:
-        """Moment at this rate (rad/s) per moment at that of the measurement; 1 without a torque-velocity relation."""
-        source = self.source_angle(joint, angle, rate)
-        return self._speed_factor(joint, source, self.at_source(joint, source), rate)
+    def speed_factor(self, joint: str, source: FloatArray, rate: Any) -> FloatArray:
+        """Moment at this rate (rad/s) per moment at that of the measurement, at its crank angles `source` (rad).
 
-    def _speed_factor(self, joint: str, source: Any, moment: FloatArray, rate: Any) -> FloatArray:
-        relation, sign = self.moments.torque_velocity, np.sign(moment)
+        1 without a torque-velocity relation.
+        """
+        relation, sign = self.moments.torque_velocity, np.sign(self.at_source(joint, source))
         if relation is None:
-            return np.ones_like(moment)
+            return np.ones_like(sign)
         then = _interpolated(self.reference_speed[joint], source)
         return relation.factor(joint, sign * rate) / relation.factor(joint, sign * then)
 

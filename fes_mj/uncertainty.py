@@ -25,12 +25,17 @@ def power_weights(motion: Motion, cadence: Any, torque: TorqueMap | ReferenceTri
     """
     angle, rate, parts = motion.joint_angle, motion.joint_rate, []
     for joint in JOINTS:
-        gain = rate[joint]
+        gain, source = rate[joint], torque.source_angle(joint, angle[joint], rate[joint])
         if isinstance(torque, TorqueMap) and torque.moments.torque_velocity:
-            gain = gain * torque.speed_factor(joint, angle[joint], cadence * gain)
-        features = fourier(torque.source_angle(joint, angle[joint], rate[joint]))
+            gain = gain * torque.speed_factor(joint, source, cadence * gain)
+        features = fourier(source)
         parts.append((gain[..., None, :] @ features)[..., 0, :] / gain.shape[-1])
     return np.asarray(cadence * np.concatenate(parts, axis=-1))
+
+
+def with_sd(value: float, deviation: float | None, digits: int = 2) -> str:
+    """A value with its standard deviation, where that is known."""
+    return f"{value:.{digits}f}" + ("" if deviation is None else f" +- {deviation:.{digits}f}")
 
 
 def standard_deviation(weights: FloatArray, covariance: FloatArray) -> float:

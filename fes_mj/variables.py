@@ -6,7 +6,7 @@ components there, R1x and R1y.
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -109,9 +109,7 @@ def replaced(design: Design, values: Mapping[str, Any]) -> Design:
             vector = changed.get(variable.attribute, getattr(design.linkage, variable.attribute))
             value = value + 1j * np.imag(vector) if part == "real" else np.real(vector) + 1j * value
         changed[variable.attribute] = np.radians(value) if variable.unit == "deg" else value
-    return replace(
-        design, linkage=replace(design.linkage, **changes["linkage"]), rider=replace(design.rider, **changes["rider"])
-    )
+    return design.changed(**changes)
 
 
 def lengths(design: Design) -> FloatArray:

@@ -4,8 +4,7 @@ import math
 from dataclasses import replace
 
 import numpy as np
-from hypothesis import assume
-from hypothesis import strategies as st
+from hypothesis import assume, strategies as st
 
 from fes_mj import kinematics
 from fes_mj.design import Design, Linkage, Rider

@@ -6,8 +6,7 @@ from random import Random
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from fes_mj import kinematics, load_design, load_moments, quasi_static
 from fes_mj.crosscheck import Case

@@ -111,7 +111,7 @@ def _run_checks(cases: list[VerificationCase], quick: bool, quiet: bool) -> list
     from fes_mj.verification.suite import FULL, QUICK, benchmarks, verify
 
     stages = QUICK if quick else FULL
-    runs = [(verify(case, (stage,))) for case in cases for stage in stages] + [benchmarks()]
+    runs = [verify(case, (stage,)) for case in cases for stage in stages] + [benchmarks()]
     return [each for run in track(runs, "checking", quiet) for each in run]
 
 
@@ -164,20 +164,19 @@ def _print(
 
 def _print_runs(cases: list[VerificationCase]) -> None:
     """Mean powers, and what the discretisation makes uncertain about them."""
-    rows = []
-    for case in cases:
-        row = case.row()
-        rows.append(
-            (
-                case.name,
-                f"{row['cadence_rpm']:.1f}",
-                f"{1e3 * row['timestep_s']:.3f}",
-                f"{row['static_power_mean_W']:.3f}",
-                f"{row['power_mean_W']:.3f}",
-                f"{row['numerical_uncertainty_W']:.4f}" if case.refined else "not refined",
-                case.difference_text,
-            )
+    rows = [
+        (
+            case.name,
+            f"{row['cadence_rpm']:.1f}",
+            f"{1e3 * row['timestep_s']:.3f}",
+            f"{row['static_power_mean_W']:.3f}",
+            f"{row['power_mean_W']:.3f}",
+            f"{row['numerical_uncertainty_W']:.4f}" if case.refined else "not refined",
+            case.difference_text,
         )
+        for case in cases
+        for row in (case.row(),)
+    ]
     columns = ("run", "rpm", "step, ms", "static, W", "dynamic, W", "numerical uncertainty, W", "difference")
     print_table("Mean crank power of one leg", columns, rows)
 

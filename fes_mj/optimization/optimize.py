@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -13,20 +13,13 @@ from fes_mj.optimization.search import BudgetSpentError, Result, Search, require
 from fes_mj.parallel import HERE, Workers, run_tasks
 
 
-@dataclass(frozen=True)
-class _Task:
-    problem: Problem
-    method: str
-    budget: int
-    start: Start
-    seed: np.random.SeedSequence
-
-
-def search_once(task: _Task) -> Result | InputError:
+def search_once(
+    problem: Problem, method: str, budget: int, start: Start, seed: np.random.SeedSequence
+) -> Result | InputError:
     """One search from its own random numbers; an error, as a value, if it found nothing feasible."""
-    search = Search(task.problem, task.budget)
+    search = Search(problem, budget)
     with suppress(BudgetSpentError):
-        METHODS[task.method](search, task.start, np.random.default_rng(task.seed))
+        METHODS[method](search, start, np.random.default_rng(seed))
     try:
         return search.result()
     except InputError as error:
@@ -52,9 +45,9 @@ def optimize(
     if start is not None:
         require_feasible(problem, start, problem.template.name)
     seeds = np.random.SeedSequence(seed).spawn(searches)
-    tasks = [_Task(problem, method, budget or BUDGETS[method], start, each) for each in seeds]
+    task = partial(search_once, problem, method, budget or BUDGETS[method], start)
     outcomes: dict[int, Result | InputError] = {}
-    for index, outcome in run_tasks(search_once, tasks, workers):
+    for index, outcome in run_tasks(task, seeds, workers):
         outcomes[index] = outcome
         if progress:
             progress(len(outcomes))

@@ -1,17 +1,11 @@
 """Tables with the titles, columns and notes of data/captions.toml."""
 
 from collections.abc import Sequence
-from functools import cache
 from typing import Any
 
-from fes_mj.files import Section, read_toml
+from fes_mj.files import read_toml
 from fes_mj.paper.printed import DATA
 from fes_mj.table import Table
-
-
-@cache
-def _captions() -> Section:
-    return read_toml(DATA / "captions.toml", "captions")
 
 
 def captioned(name: str, rows: list[tuple[Any, ...]], **values: Sequence[str] | str) -> Table:
@@ -19,7 +13,7 @@ def captioned(name: str, rows: list[tuple[Any, ...]], **values: Sequence[str] | 
 
     A column with a list in its braces is repeated for each.
     """
-    caption, columns = _captions().section(name).content, {}
+    caption, columns = read_toml(DATA / "captions.toml", "captions").section(name).content, {}
     for column in caption["columns"]:
         title, _, form = column.partition(" @")
         key = title.partition("{")[2].partition("}")[0]

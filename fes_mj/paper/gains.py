@@ -14,6 +14,7 @@ from fes_mj.paper.runs import Runs, joint_speed
 from fes_mj.statics import QuasiStatic, quasi_static, ratio_sd
 from fes_mj.table import Table
 from fes_mj.torque_velocity import TorqueVelocity, load_torque_velocity
+from fes_mj.uncertainty import with_sd
 
 TRICYCLE_MASS = 15.0  # kg, assumption: a light recumbent tricycle
 
@@ -30,7 +31,7 @@ def speed_table(runs: Runs) -> Table:
             gains = [
                 _gain(other, base) for other, base in ((result, trt), (slowed, trt), (hill, runs.hill["trt", group]))
             ]
-            rows.append((name.upper(), group, speed, *gains, f"{hill.power_mean:.1f} +- {hill.power_sd:.1f}"))
+            rows.append((name.upper(), group, speed, *gains, with_sd(hill.power_mean, hill.power_sd, 1)))
     return captioned("speed", rows)
 
 
@@ -83,7 +84,7 @@ def energy_swing(power: FloatArray, cadence: float) -> float:
 
 
 def _gain(result: QuasiStatic, base: QuasiStatic) -> str:
-    return f"{result.power_mean / base.power_mean:.2f} +- {ratio_sd(result, base):.2f}"
+    return with_sd(result.power_mean / base.power_mean, ratio_sd(result, base))
 
 
 def _hill_gains(runs: Runs, relation: TorqueVelocity) -> list[Any]:

@@ -16,6 +16,7 @@ from fes_mj.paper.reconstruction import Posterior
 from fes_mj.paper.runs import Runs
 from fes_mj.statics import QuasiStatic
 from fes_mj.table import Table
+from fes_mj.uncertainty import with_sd
 
 WIDTHS = (2.0, 5.0, 10.0)  # deg over which a jump of the torque map is smoothed
 _DRAWS = 20_000  # of the criteria's weights
@@ -39,8 +40,10 @@ def continuity_table(runs: Runs, posteriors: dict[str, Posterior]) -> Table:
     """Section 7.2: the jump of the torque map at each end of travel, and what smoothing it costs in mean power."""
     rows = []
     for (name, group), result in runs.static.items():
-        jumps = [_with_sd(*posteriors[group].predict(weights)) for weights in jump_weights(result)]
-        costs = [_with_sd(*posteriors[group].predict(smoothing_weights(result, np.radians(w)))) for w in WIDTHS]
+        jumps = [with_sd(*posteriors[group].predict(weights), digits=1) for weights in jump_weights(result)]
+        costs = [
+            with_sd(*posteriors[group].predict(smoothing_weights(result, np.radians(w))), digits=1) for w in WIDTHS
+        ]
         rows.append((name.upper(), group, *jumps, *costs))
     return captioned("continuity", rows, width=[f"{width:g}" for width in WIDTHS])
 
@@ -121,7 +124,3 @@ def smoothing_weights(result: QuasiStatic, width: float) -> FloatArray:
 def _by_design(runs: Runs) -> dict[str, QuasiStatic]:
     """One result a design, for what does not depend on the moments."""
     return {name: result for (name, group), result in runs.static.items() if group == GROUPS[0]}
-
-
-def _with_sd(value: float, deviation: float) -> str:
-    return f"{value:.1f} +- {deviation:.1f}"

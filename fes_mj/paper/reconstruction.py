@@ -134,10 +134,7 @@ def _system(rows: list[Evidence]) -> tuple[FloatArray, FloatArray, FloatArray]:
 
 
 def _condition(
-    weights: FloatArray,
-    values: FloatArray,
-    errors: FloatArray,
-    hyperparameters: Hyperparameters,
+    weights: FloatArray, values: FloatArray, errors: FloatArray, hyperparameters: Hyperparameters
 ) -> Posterior:
     prior = hyperparameters.prior_variance()
     spread = weights * prior

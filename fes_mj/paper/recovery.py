@@ -21,7 +21,7 @@ from fes_mj.paper.printed import SIX_BARS, table1
 from fes_mj.paper.reconstruction import Posterior, Reconstruction, condition
 from fes_mj.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.table import Table
-from fes_mj.uncertainty import power_weights
+from fes_mj.uncertainty import power_weights, with_sd
 from fes_mj.variables import lengths, with_lengths
 
 _SAMPLES = 2000  # of the posterior, for shares that no formula gives
@@ -41,12 +41,12 @@ def evidence_table(evidence: list[Evidence], recovered: Reconstruction) -> Table
         rows.append(
             (
                 row.name,
-                f"{value:.2f} +- {error:.2f}",
-                _with_sd(fitted),
+                with_sd(value, error),
+                with_sd(*fitted),
                 (fitted[0] - value) / error,
-                _with_sd(left_out),
+                with_sd(*left_out),
                 (left_out[0] - value) / np.hypot(left_out[1], error),
-                _unit(row),
+                "W, part - share x whole" if row.quantity == "work_share" else row.unit,
             )
         )
     return captioned("evidence", rows)
@@ -97,9 +97,7 @@ def predictive_table(recovered: Reconstruction) -> Table:
             mean, deviation = posterior.predict(np.concatenate([moment, 0 * moment]))
             name = "extending" if direction > 0 else "flexing"
             used = "used" if group == "p1p2" else "not used"
-            rows.append(
-                (f"7.2: knee {name} at 73 deg, {group}", f"{said:.0f} N m", f"{mean:.1f} +- {deviation:.1f}", used)
-            )
+            rows.append((f"7.2: knee {name} at 73 deg, {group}", f"{said:.0f} N m", with_sd(mean, deviation, 1), used))
     for name in ("r2", "d1"):
         share, deviation, probability = _negative_share(load_design(name), recovered.posteriors["p1p2"])
         rows.append(
@@ -184,11 +182,3 @@ def _drawn_crank_moments(design: Design, posterior: Posterior) -> FloatArray:
     random = np.random.default_rng(_SEED)
     draws = random.multivariate_normal(posterior.mean, posterior.covariance, _SAMPLES, method="eigh")
     return np.concatenate(rows, axis=1) @ draws.T
-
-
-def _with_sd(prediction: tuple[float, float]) -> str:
-    return f"{prediction[0]:.2f} +- {prediction[1]:.2f}"
-
-
-def _unit(row: Evidence) -> str:
-    return "W, part - share x whole" if row.quantity == "work_share" else row.unit

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 from fes_mj.files import json_text, replacing, write_text
 from fes_mj.paper import gains, metrics, readings, recovery, tables
@@ -93,7 +93,8 @@ def reproduce(folder: Path, done: Done, svg: bool = False) -> list[Path]:
         name.removesuffix(".md"): {table.title: table.records() for table in contents}
         for name, (_, contents) in pages.items()
     }
-    return [*written, _write_record(folder / "reproduction.json", record)]
+    write_text(folder / "reproduction.json", json_text(record))
+    return [*written, folder / "reproduction.json"]
 
 
 def inputs() -> list[Path]:
@@ -119,8 +120,3 @@ def _write_figure(stem: Path, draw: Callable[[], Figure], svg: bool) -> list[Pat
                 metadata = {"Date": None} if path.suffix == ".svg" else {"Software": None}
                 figure.savefig(temporary, dpi=DPI, metadata=metadata)
     return paths
-
-
-def _write_record(path: Path, record: dict[str, Any]) -> Path:
-    write_text(path, json_text(record))
-    return path

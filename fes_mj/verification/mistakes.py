@@ -1,4 +1,7 @@
-"""How the faults of data/faults.toml are made. Each was made in print, in a tool, or nearly in this project."""
+"""How the faults of data/faults.toml are made. Each was made in print, in a tool, or nearly in this project.
+
+In the order of the pipeline: statics, kinematics, torque map, MuJoCo model, simulation, design file.
+"""
 
 import math
 from collections.abc import Callable
@@ -27,9 +30,6 @@ Steps: TypeAlias = dict[str, Any]
 _FILE = Path(__file__).parents[1] / "data" / "faults.toml"
 
 
-# Statics
-
-
 def with_equilibrium(**options: Any) -> Steps:
     return {"equilibrium": lambda _, motion, moments, loads=None: equilibrium(motion, moments, loads, **options)}
 
@@ -45,9 +45,6 @@ def without_length(motion: Motion, body: str, point: str) -> Any:
 
 def by_crank_angle(case: Case, motion: Motion) -> PerJoint[FloatArray]:
     return case.moments.at(motion.crank_angle - case.moments.measured_on.top_dead_centre)
-
-
-# Kinematics
 
 
 def in_motion(change: Callable[[Motion], Motion]) -> Steps:
@@ -75,9 +72,6 @@ def without_centripetal(motion: Motion) -> Motion:
     knee, thigh = motion.points["knee"], motion.rotation["thigh"]
     tangential = 1j * thigh.second * knee.value
     return replace(motion, points=motion.points | {"knee": Jet(knee.value, knee.first, tangential)})
-
-
-# Torque map
 
 
 def in_map(kind: type[TorqueMap]) -> Steps:
@@ -129,9 +123,6 @@ class LateFeedback(TorqueMap):
         return late
 
 
-# MuJoCo model
-
-
 def in_model(kind: str, name: str = "", **changes: Any) -> Steps:
     """Change attributes of the elements of a kind ("bodies", "joints", ...), of all or of the one with this name.
 
@@ -161,9 +152,6 @@ def in_keyframe(field: str, joint: str, change: Callable[[float], float]) -> Ste
     return {"edit_model": edit}
 
 
-# Simulation
-
-
 def late_torque(case: Case, **options: Any) -> Any:
     run = Case.run(case, **options)
     return replace(run, crank_moment=np.roll(run.crank_moment, 1))
@@ -182,13 +170,9 @@ def without_couples(case: Case, *arguments: Any, **options: Any) -> Any:
     return {body: load._replace(couple=0 * load.couple) for body, load in loads.items()}
 
 
-# Design file
-
-
 def in_linkage(**changes: Callable[[float], float]) -> Callable[[Design], Design]:
     def edit(design: Design) -> Design:
-        new: dict[str, Any] = {name: change(getattr(design.linkage, name)) for name, change in changes.items()}
-        return replace(design, linkage=replace(design.linkage, **new))
+        return design.changed({name: change(getattr(design.linkage, name)) for name, change in changes.items()}, {})
 
     return edit
 

@@ -186,7 +186,4 @@ def chain_checks(subject: str) -> list[Check]:
 def four_bar_checks(subject: str) -> list[Check]:
     """The four-bar at the settings of `simulate`."""
     angle, gap = run_four_bar()
-    return [
-        check("four_bar_angle", angle, subject),
-        check("four_bar_gap", gap, subject),
-    ]
+    return [check("four_bar_angle", angle, subject), check("four_bar_gap", gap, subject)]

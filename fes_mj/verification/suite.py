@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterator
-from typing import NamedTuple
+from typing import TypeAlias
 
 import numpy as np
 
@@ -77,23 +77,9 @@ def printed_checks(case: VerificationCase) -> list[Check]:
     return checks
 
 
-class Stage(NamedTuple):
-    """Checks that belong together."""
-
-    title: str
-    run: Callable[[VerificationCase], list[Check]]
-
-
-QUICK = (
-    Stage("geometry", geometry_checks),
-    Stage("torque map", map_checks),
-    Stage("references", exact_checks),
-    Stage("model", model_checks),
-    Stage("simulated turn", turn_checks),
-    Stage("paper", printed_checks),
-)
-FULL = (*QUICK, Stage("two legs", two_leg_checks), Stage("refinement", refinement_checks))
-
+Stage: TypeAlias = Callable[[VerificationCase], list[Check]]
+QUICK: tuple[Stage, ...] = (geometry_checks, map_checks, exact_checks, model_checks, turn_checks, printed_checks)
+FULL = (*QUICK, two_leg_checks, refinement_checks)
 BENCHMARKS = {"A02": chain_checks, "four-bar": four_bar_checks}
 
 
@@ -101,7 +87,7 @@ def verify(case: VerificationCase, stages: tuple[Stage, ...] = QUICK) -> Iterato
     """Run the checks of a case, stage by stage. Raises AssemblyError if its linkage does not close."""
     for stage in stages:
         try:
-            yield from stage.run(case)
+            yield from stage(case)
         except UnstableError:
             yield case.check("stability", math.inf)
 
