@@ -64,7 +64,7 @@ class WorkTable:
         position = (source + np.pi) * (_TABLE_STEPS / (3 * np.pi))
         index = np.minimum(position.astype(np.int64), _TABLE_STEPS - 1)
         work = self._work[joint]
-        return work[index] + (position - index)[:, None] * (work[index + 1] - work[index])
+        return np.asarray(work[index] + (position - index)[:, None] * (work[index + 1] - work[index]))
 
 
 @dataclass(frozen=True)

@@ -39,7 +39,8 @@ def joint_ranges(design: Design, crank_angle: FloatArray = FULL_TURN) -> FloatAr
     Shape (4,), or (designs, 4) for a batch.
     """
     angles = joint_angles(design, positions(design, crank_angle))
-    return np.degrees(np.stack([f(angle, axis=-1) for angle in angles for f in (np.min, np.max)], axis=-1))
+    ends = [f(angle, axis=-1) for angle in angles for f in (np.min, np.max)]
+    return np.asarray(np.degrees(np.stack(ends, axis=-1)))
 
 
 def grashof_margin(design: Design) -> FloatArray:

@@ -53,7 +53,8 @@ def _numbered(function: Callable[[Task], Outcome], index: int, task: Task) -> tu
 
 def _backend(joblib: Any, workers: Workers) -> AbstractContextManager[Any]:
     if not workers.cluster:
-        return joblib.parallel_config(backend="loky", n_jobs=workers.jobs, inner_max_num_threads=1)
+        here: AbstractContextManager[Any] = joblib.parallel_config("loky", n_jobs=workers.jobs, inner_max_num_threads=1)
+        return here
     distributed = require_extra("cluster", "distributed")
     try:
         client = distributed.Client(workers.cluster, timeout=PATIENCE, set_as_default=False)

@@ -82,7 +82,9 @@ def random_moments(rng: np.random.Generator) -> fes_mj.JointMoments:
 
     def curve() -> np.ndarray:
         mean = rng.uniform(2, 10)
-        return mean + sum(rng.uniform(-8, 8) * np.cos(k * angle + rng.uniform(0, 2 * np.pi)) for k in (1, 2, 3))
+        return np.asarray(
+            mean + sum(rng.uniform(-8, 8) * np.cos(k * angle + rng.uniform(0, 2 * np.pi)) for k in (1, 2, 3))
+        )
 
     return fes_mj.JointMoments("random", angle, curve(), curve())
 

@@ -55,7 +55,7 @@ class Evaluation:
 
     @property
     def feasible(self) -> BoolArray:
-        return np.all(self.margins >= 0, axis=1)
+        return np.asarray(np.all(self.margins >= 0, axis=1))
 
     @property
     def scaled_margins(self) -> FloatArray:
@@ -65,7 +65,7 @@ class Evaluation:
     @property
     def violation(self) -> FloatArray:
         """Sum of all violations in their scales, shape (n,); zero for feasible designs."""
-        return np.maximum(0, -self.scaled_margins).sum(axis=1)
+        return np.asarray(np.maximum(0, -self.scaled_margins).sum(axis=1))
 
 
 @dataclass(frozen=True)

@@ -91,4 +91,4 @@ def depth_inside(polygon: ComplexArray, points: ComplexArray) -> FloatArray:
     # a ray to the right crosses the border an odd number of times from inside
     spans = (start.imag > points[:, None].imag) != (end.imag > points[:, None].imag)
     crosses = spans & ((np.conj(edge) * arm).imag * np.sign(edge.imag) > 0)
-    return np.where(crosses.sum(axis=1) % 2 == 1, distance, -distance)
+    return np.asarray(np.where(crosses.sum(axis=1) % 2 == 1, distance, -distance))

@@ -88,7 +88,7 @@ def feasible_start(search: Search, random: np.random.Generator) -> FloatArray:
         used = int(np.argmax(evaluation.feasible)) + 1 if found else len(x)
         search.note(evaluation.x[:used], search.problem.merit(evaluation)[:used])
         if found:
-            return evaluation.x[used - 1]
+            return np.asarray(evaluation.x[used - 1])
     raise BudgetSpentError
 
 

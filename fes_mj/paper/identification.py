@@ -83,7 +83,7 @@ def range_misfit(printed: Design, target: Expected, seat_angle: float, coupler_a
     )
 
     def error(shift: FloatArray) -> FloatArray:
-        return joint_ranges(candidate(shift)) - wanted
+        return np.asarray(joint_ranges(candidate(shift)) - wanted)
 
     random = np.random.default_rng(_SEED)
     starts = [start for start in random.uniform(-0.9, 0.9, (60, 9)) if np.all(np.isfinite(error(start)))]

@@ -88,7 +88,8 @@ def _advance() -> Callable[..., None]:
             if not row % FORCE_EVERY:
                 force_rows[row // FORCE_EVERY] = forces
 
-    return advance
+    compiled: Callable[..., None] = advance
+    return compiled
 
 
 def _library() -> Path:

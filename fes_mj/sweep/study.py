@@ -123,7 +123,7 @@ def _axis(grid: Section, axis: str) -> list[Any]:
     if axis in COMPONENTS and isinstance(values, dict) and values.keys() == {"from", "to", "steps"}:
         low, high = _range(Section(grid.path, grid.name, {axis: [values["from"], values["to"]]}), axis)
         span = Section(grid.path, grid.label(axis), values)
-        return np.linspace(low, high, _few(span, "steps", span.whole("steps", 1))).tolist()
+        return [*np.linspace(low, high, _few(span, "steps", span.whole("steps", 1))).tolist()]
     if not isinstance(values, list) or not values:
         form = "" if axis in _EXAMPLES else " or { from = ..., to = ..., steps = ... }"
         grid.refuse(axis, values, f"a list like [{example}]{form}")
