@@ -10,7 +10,7 @@ from typing import Any
 
 
 def provenance(inputs: Iterable[Path] = (), packages: Iterable[str] = ()) -> dict[str, Any]:
-    """Versions (also of `packages`), command line without paths, SHA-256 of every input file by name."""
+    """Versions (also of `packages`), command line with the program's bare name, SHA-256 of every input file by name."""
     return {
         "fes_mj": version("fes-mj"),
         "python": platform.python_version(),

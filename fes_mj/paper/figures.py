@@ -43,7 +43,7 @@ def power_of_the_trt(runs: Runs, posteriors: Posteriors) -> Figure:
 
 
 def moments_over_joint_angle(runs: Runs, posteriors: Posteriors) -> Figure:
-    """Figure 5: the torque maps, extension and flexion told apart."""
+    """Figure 5: the torque maps, extension and flexion apart."""
     figure, axes = _grid(1, 2, (7.2, 3.2))
     for ax, (group, posterior) in zip(axes.flat, posteriors.items(), strict=True):
         _maps(ax, posterior, PAPER_TRICYCLE.ranges.items())

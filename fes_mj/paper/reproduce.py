@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from fes_mj.files import json_text, replacing, write_text
 from fes_mj.paper import gains, metrics, readings, recovery, tables
-from fes_mj.paper.evidence import load_evidence
+from fes_mj.paper.evidence import Evidence, load_evidence
 from fes_mj.paper.printed import DATA
-from fes_mj.paper.reconstruction import reconstruct
-from fes_mj.paper.runs import RUNS, run_all
+from fes_mj.paper.reconstruction import Reconstruction, reconstruct
+from fes_mj.paper.runs import RUNS, Runs, run_all
 from fes_mj.provenance import provenance
 from fes_mj.style import STYLE
 from fes_mj.table import Table
@@ -43,7 +43,27 @@ def reproduce(folder: Path, done: Done, svg: bool = False) -> list[Path]:
     evidence = load_evidence()
     recovered = reconstruct(evidence)
     runs = run_all(done)
-    pages = {
+    pages = _pages(evidence, recovered, runs, done)
+    written = [_write_page(folder / name, *page) for name, page in pages.items()]
+    (folder / "figures").mkdir(exist_ok=True)
+    for name, draw in FIGURES.items():
+        written += _write_figure(folder / "figures" / name, partial(draw, runs, recovered.posteriors), svg)
+        done()
+    record = {"provenance": provenance(inputs(), ["matplotlib"]), "hyperparameters": recovered.hyperparameters.__dict__}
+    record["timestep_s"] = {" ".join(map(str, run)): case.simulation.timestep for run, case in runs.dynamic.items()}
+    record |= {
+        name.removesuffix(".md"): {table.title: table.records() for table in contents}
+        for name, (_, contents) in pages.items()
+    }
+    write_text(folder / "reproduction.json", json_text(record))
+    return [*written, folder / "reproduction.json"]
+
+
+def _pages(
+    evidence: list[Evidence], recovered: Reconstruction, runs: Runs, done: Done
+) -> dict[str, tuple[str, list[Table]]]:
+    """Title and tables of every page by file name."""
+    return {
         "identification.md": (
             "Dimensions behind the paper's Table 2",
             [readings.dimensions_table(), readings.ranges_table(), readings.readings_table(done)],
@@ -82,19 +102,6 @@ def reproduce(folder: Path, done: Done, svg: bool = False) -> list[Path]:
             [table(runs) for table in (gains.speed_table, gains.hill_table, gains.smoothness_table)],
         ),
     }
-    written = [_write_page(folder / name, *page) for name, page in pages.items()]
-    (folder / "figures").mkdir(exist_ok=True)
-    for name, draw in FIGURES.items():
-        written += _write_figure(folder / "figures" / name, partial(draw, runs, recovered.posteriors), svg)
-        done()
-    record = {"provenance": provenance(inputs(), ["matplotlib"]), "hyperparameters": recovered.hyperparameters.__dict__}
-    record["timestep_s"] = {" ".join(map(str, run)): case.simulation.timestep for run, case in runs.dynamic.items()}
-    record |= {
-        name.removesuffix(".md"): {table.title: table.records() for table in contents}
-        for name, (_, contents) in pages.items()
-    }
-    write_text(folder / "reproduction.json", json_text(record))
-    return [*written, folder / "reproduction.json"]
 
 
 def inputs() -> list[Path]:
