@@ -9,7 +9,6 @@ from typing import Any
 COLOURS = {
     "knee": "#00a2bf",
     "hip": "#c4189a",
-    "total": "#20242c",
     "mujoco": "#1f4fd8",
     "reference": "#8a8f98",  # the exact inverse dynamics
     "quasi-static": "#d97a00",

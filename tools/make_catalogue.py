@@ -15,7 +15,7 @@ def main() -> None:
     write_text(FOLDER / "trt.toml", design_toml(PAPER_TRICYCLE.design, trt))
     for name in SIX_BARS:
         result = identify(load_design(name, "printed"), table1()[name])
-        if not result.found:
+        if not result.feasible:
             raise SystemExit(f"{name}: no dimensions inside the rounding of Table 2 satisfy Table 1")
         design = rounded(result.design)
         ranges = joint_ranges(design)

@@ -190,7 +190,7 @@ def _power(ax: Axes, runs: Runs, name: str, group: str) -> None:
         power = static.power_of(joint)
         ax.plot(*over_turn(static.crank_angle, power), color=COLOURS[joint], label=f"{joint}, quasi-static")
     total = over_turn(static.crank_angle, static.power)
-    ax.plot(*total, color=COLOURS["total"], label="total, quasi-static")
+    ax.plot(*total, color=COLOURS["quasi-static"], label="both, quasi-static")
     massless = over_turn(case.massless.crank_angle, case.massless.power, points=40)
     ax.plot(*massless, ".", color=COLOURS["mujoco"], ms=4, label="MuJoCo, nearly massless")
     label = "MuJoCo, with segment masses"

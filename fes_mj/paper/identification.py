@@ -25,12 +25,12 @@ _SEED = 2022
 
 @dataclass(frozen=True)
 class Identification:
-    """Outcome for one design: the identified linkage, or the closest try when `found` is false."""
+    """Outcome for one design: the identified linkage, or the closest try when `feasible` is false."""
 
     design: Design
     shift: FloatArray  # m, identified minus printed, in the order of variables.LENGTHS
     ranges: FloatArray  # deg: knee min, knee max, hip min, hip max
-    found: bool
+    feasible: bool
 
     @property
     def cost(self) -> float:

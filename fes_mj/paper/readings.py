@@ -64,7 +64,7 @@ def _outcomes(reading: Reading) -> Iterator[tuple[str, str]]:
             ground = printed.linkage.ground.conjugate()
             printed = replace(printed, linkage=replace(printed.linkage, ground=ground))
         result = identify(printed, target, reading.seat_angle, reading.coupler_angle)
-        if result.found:
+        if result.feasible:
             yield name, f"fits, cost {result.cost:.2f}"
         else:
             yield name, f"misses by {range_misfit(printed, target, reading.seat_angle, reading.coupler_angle):.1f} deg"
