@@ -1,4 +1,7 @@
-"""Designs and moments that many tests share."""
+"""Designs, moments and a study that many tests share."""
+
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -7,6 +10,7 @@ from hypothesis import settings
 import fes_mj
 from fes_mj.design_file import DESIGNS
 from fes_mj.moments import GROUPS
+from fes_mj.sweep.sweep import Sweep
 
 # The same examples in every run: a failure can be repeated. `--hypothesis-profile default` looks further.
 settings.register_profile("fes_mj", derandomize=True, deadline=None, max_examples=50)
@@ -32,3 +36,36 @@ def smooth_moments() -> fes_mj.JointMoments:
     return fes_mj.JointMoments(
         "smooth", angle, 9 + 11 * np.cos(angle - 1.2) + 2 * np.sin(3 * angle), 7 * np.sin(angle + 0.4)
     )
+
+
+# Of the fixture `study`.
+GRID = """
+[study]
+chunk = 7
+[grid]
+design = ["d1", "r2", "mine.toml"]
+moments = ["p1p2", "mine.csv"]
+cadence_rpm = [60, 90]
+thigh = { from = 0.50, to = 0.54, steps = 3 }
+[sample]
+size = 4
+seed = 3
+R1x = [-0.80, -0.60]
+gear_ratio = [1.0, 2.0]
+"""
+
+
+@pytest.fixture
+def study(tmp_path: Path) -> Path:
+    """A study with a design and moments of its own beside it."""
+    source = Path(fes_mj.__file__).parent / "data"
+    (tmp_path / "mine.toml").write_text((source / "designs/identified/d2.toml").read_text())
+    (tmp_path / "mine.csv").write_text("crank_angle_deg,knee_Nm,hip_Nm\n0,1,2\n90,20,-3\n200,-5,4\n")
+    path = tmp_path / "study.toml"
+    path.write_text(GRID)
+    return path
+
+
+def rows_of(sweep: Sweep) -> list[dict[str, Any]]:
+    rows: list[dict[str, Any]] = sweep.read().to_pylist()
+    return rows

@@ -1,4 +1,4 @@
-"""Reading and refusing: one wording, naming file, key, value and what is allowed."""
+"""Reading, refusing and writing: one wording, naming file, key, value and what is allowed; files appear whole."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -97,3 +97,19 @@ def test_damaged_json_is_refused(text: str, words: str, tmp_path: Path) -> None:
     path.write_text(text)
     with pytest.raises(InputError, match=words):
         read_json(path, "record")
+
+
+def test_a_failed_write_leaves_the_old_file(tmp_path: Path) -> None:
+    from fes_mj.files import replacing
+
+    target = tmp_path / "result.json"
+    target.write_text("old")
+
+    def interrupted() -> None:
+        with replacing(target) as beside:
+            beside.write_text("half")
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        interrupted()
+    assert [path.read_text() for path in tmp_path.iterdir()] == ["old"]

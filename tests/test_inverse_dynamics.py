@@ -38,21 +38,3 @@ def test_masses_do_not_change_the_mean(design: Design, moments: JointMoments) ->
     massive = crank_moment(static.motion, static.torque, static.cadence)
     assert massive.mean() == pytest.approx(static.crank_moment.mean(), rel=1e-9)
     assert np.ptp(massive - static.crank_moment) > 1.0  # and yet the moment itself is another
-
-
-def test_a_stretched_leg_weighs_what_it_should() -> None:
-    """Static moment about the hip of thigh and shank with foot lying horizontally, against the sum of their parts."""
-    from fes_mj.design_file import load_design
-    from fes_mj.segments import ANKLE_FROM_HEEL, DE_LEVA, FOOT_LENGTH
-
-    design, table = load_design("trt"), DE_LEVA["male"]
-    bodies = inertias(design)
-    assert bodies["thigh"].mass == pytest.approx(0.1416 * 75)
-    assert bodies["shank"].mass == pytest.approx((0.0433 + 0.0137) * 75)
-    to_ankle = np.exp(1j * design.boot_angle)
-    foot = table["foot"].centre - ANKLE_FROM_HEEL
-    centre = (
-        table["shank"].mass * table["shank"].centre * 0.52
-        + table["foot"].mass * (0.52 - 1j * foot * FOOT_LENGTH["male"])
-    ) / (table["shank"].mass + table["foot"].mass)
-    assert bodies["shank"].centre == pytest.approx(centre * to_ankle)

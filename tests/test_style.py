@@ -1,10 +1,9 @@
-"""One look: colours that can be told apart, and the model wears them."""
+"""One look: colours that can be told apart."""
 
 from itertools import combinations
 
 import numpy as np
 
-from fes_mj.simulation.appearance import PARTS
 from fes_mj.style import COLOURS, LINKS, rgb
 
 
@@ -12,8 +11,3 @@ def test_colours_can_be_told_apart() -> None:
     for palette in (COLOURS, LINKS):
         for one, other in combinations(palette.values(), 2):
             assert np.linalg.norm(np.subtract(rgb(one), rgb(other))) > 0.08, (one, other)
-
-
-def test_the_model_wears_the_colours_of_the_plots() -> None:
-    for name, colour in (LINKS | {joint: COLOURS[joint] for joint in ("knee", "hip")}).items():
-        assert PARTS[name].colour == rgb(colour)

@@ -1,41 +1,26 @@
-"""The torque map: exact inverse of the reference TRT, same for arrays and floats, kept at its ends."""
+"""The torque map: the moments on their own tricycle, same for arrays and floats, kept at its ends."""
 
 import math
 
 import numpy as np
 import pytest
 
+import fes_mj
 from fes_mj import kinematics
 from fes_mj.joints import JOINTS
 from fes_mj.moments import JointMoments
 from fes_mj.reference_tricycle import PAPER_TRICYCLE
-from fes_mj.torque_map import TorqueMap
-
-_TURN = np.linspace(0.003, 2 * np.pi, 997, endpoint=False)  # avoids the exact reversals
-
-
-def test_top_dead_centre_is_where_the_leg_is_most_bent() -> None:
-    turn = np.linspace(0, 2 * np.pi, 360_000, endpoint=False)
-    knee = kinematics.solve(PAPER_TRICYCLE.design, turn).joint_angle.knee
-    assert math.degrees(PAPER_TRICYCLE.top_dead_centre) == pytest.approx(22.4, abs=0.05)  # the 22 deg of the paper
-    assert turn[np.argmin(knee)] == pytest.approx(PAPER_TRICYCLE.top_dead_centre, abs=1e-4)
-
-
-@pytest.mark.parametrize("joint", JOINTS)
-def test_source_angle_inverts_the_reference(joint: str) -> None:
-    motion = kinematics.solve(PAPER_TRICYCLE.design, _TURN + PAPER_TRICYCLE.top_dead_centre)
-    angle, rate = motion.joint_angle[joint], motion.joint_rate[joint]
-    error = np.exp(1j * (PAPER_TRICYCLE.source_angle(joint, angle, rate) - _TURN)) - 1
-    assert np.abs(error).max() < 1e-10
+from fes_mj.torque_map import TorqueMap, scalar_map
+from tests.test_reference_tricycle import TURN
 
 
 def test_on_the_reference_itself_the_map_gives_back_the_moments(smooth_moments: JointMoments) -> None:
     torque_map, motion = (
         TorqueMap(smooth_moments),
-        kinematics.solve(PAPER_TRICYCLE.design, _TURN + PAPER_TRICYCLE.top_dead_centre),
+        kinematics.solve(PAPER_TRICYCLE.design, TURN + PAPER_TRICYCLE.top_dead_centre),
     )
     for joint in JOINTS:
-        given = np.interp(_TURN, smooth_moments.crank_angle, getattr(smooth_moments, joint), period=2 * np.pi)
+        given = np.interp(TURN, smooth_moments.crank_angle, getattr(smooth_moments, joint), period=2 * np.pi)
         mapped = torque_map.moment(joint, motion.joint_angle[joint], motion.joint_rate[joint])
         assert np.abs(mapped - given).max() < 1e-3  # 0.1 deg table
 
@@ -67,12 +52,13 @@ def test_a_rate_of_zero_counts_as_extension(smooth_moments: JointMoments) -> Non
     assert torque_map.moment("knee", angle, 0.0) != torque_map.moment("knee", angle, -1.0)
 
 
-def test_reference_ranges_are_the_extremes_of_its_motion() -> None:
-    motion = kinematics.solve(PAPER_TRICYCLE.design, np.linspace(0, 2 * np.pi, 36_000))
-    for joint, angle in motion.joint_angle.items():
-        assert PAPER_TRICYCLE.ranges[joint] == pytest.approx((angle.min(), angle.max()), abs=1e-7)
-
-
-def test_reference_ranges_are_those_of_table_1() -> None:
-    assert np.degrees(PAPER_TRICYCLE.ranges.knee) == pytest.approx([69, 122], abs=0.5)
-    assert np.degrees(PAPER_TRICYCLE.ranges.hip) == pytest.approx([85, 120], abs=0.5)
+@pytest.mark.parametrize("joint", JOINTS)
+def test_the_map_of_floats_is_the_map_of_arrays(joint: str, moments: fes_mj.JointMoments) -> None:
+    torque_map = TorqueMap(moments)
+    scalar = scalar_map(joint, lambda value: math.acos(min(1.0, max(-1.0, value))))
+    angles, table = np.linspace(1.0, 2.4, 201), torque_map.table[joint]
+    for rate in (-1.0, 0.0, 1.0):
+        expected = torque_map.moment(joint, angles, rate)
+        assert [scalar(torque_map.parameters(joint), table, angle, rate) for angle in angles] == pytest.approx(
+            list(expected), abs=1e-9
+        )

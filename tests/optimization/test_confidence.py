@@ -10,7 +10,7 @@ from fes_mj.optimization.confidence import gain, uncertain_table
 from fes_mj.optimization.optimize import optimize
 from fes_mj.optimization.problem import Problem
 from fes_mj.statics import difference_sd
-from tests.optimization.test_problem import problem_of
+from tests.optimization.conftest import problem_of
 
 GROUPS = ("p1p2", "p1p3")
 

@@ -1,17 +1,13 @@
 """The machine-code loop against the Python one: the same run, bit for bit."""
 
-import math
-
 import numpy as np
 import pytest
 
 import fes_mj
 from fes_mj.errors import UnstableError
-from fes_mj.joints import JOINTS
 from fes_mj.simulation.bench import simulate
 from fes_mj.simulation.compiled import compiled_loop
 from fes_mj.simulation.stepping import feedback_loop
-from fes_mj.torque_map import TorqueMap, scalar_map
 
 pytest.importorskip("numba")
 
@@ -43,15 +39,3 @@ def test_a_run_that_breaks_down_says_so(smooth_moments: fes_mj.JointMoments) -> 
     huge = fes_mj.JointMoments("huge", smooth_moments.crank_angle, 1e13 * smooth_moments.knee, smooth_moments.hip)
     with pytest.raises(UnstableError, match="d1: the simulation became unstable"):
         simulate(fes_mj.load_design("d1"), huge, make_loop=compiled_loop)
-
-
-@pytest.mark.parametrize("joint", JOINTS)
-def test_the_map_of_floats_is_the_map_of_arrays(joint: str, moments: fes_mj.JointMoments) -> None:
-    torque_map = TorqueMap(moments)
-    scalar = scalar_map(joint, lambda value: math.acos(min(1.0, max(-1.0, value))))
-    angles, table = np.linspace(1.0, 2.4, 201), torque_map.table[joint]
-    for rate in (-1.0, 0.0, 1.0):
-        expected = torque_map.moment(joint, angles, rate)
-        assert [scalar(torque_map.parameters(joint), table, angle, rate) for angle in angles] == pytest.approx(
-            list(expected), abs=1e-9
-        )

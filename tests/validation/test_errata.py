@@ -215,7 +215,7 @@ def test_e6_no_gamma_in_the_tables() -> None:
         for angle in (0.0, 90.0)
     ]
     assert np.abs(knee[0] - knee[1]).max() > 10
-    assert not identify(printed, table1()["d1"], coupler_angle=0.0).found
+    assert not identify(printed, table1()["d1"], coupler_angle=0.0).feasible
 
 
 def test_e7_seat_angles() -> None:

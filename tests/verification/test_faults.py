@@ -4,37 +4,17 @@ from pathlib import Path
 
 import pytest
 
-import fes_mj
-from fes_mj.checks import definitions
-from fes_mj.files import read_toml
-from fes_mj.paper.printed import table1
 from fes_mj.verification.case import VerificationCase
 from fes_mj.verification.faults import Fault, inject, passing
-from fes_mj.verification.mistakes import EDITS, STEPS, faults
-from fes_mj.verification.suite import FULL, benchmarks, verify
+from fes_mj.verification.mistakes import faults
+from tests.verification.conftest import case_of
 
 ROOT = Path(__file__).parents[2]
-
-
-def _case(source: str) -> VerificationCase:
-    return VerificationCase(fes_mj.load_design(source), fes_mj.load_moments("p1p2"), expected=table1().get(source))
-
-
-@pytest.fixture(scope="module")
-def case() -> VerificationCase:
-    return _case("d1")
 
 
 @pytest.fixture(scope="module")
 def baseline(case: VerificationCase) -> dict[str, bool]:
     return passing(case)
-
-
-def test_every_fault_is_explained_and_made_in_one_way() -> None:
-    rows = read_toml(ROOT / "fes_mj" / "data" / "faults.toml", "faults").content
-    assert STEPS.keys() | EDITS.keys() == rows.keys()
-    assert not STEPS.keys() & EDITS.keys()
-    assert {fault.guard for fault in faults()} <= set(definitions())
 
 
 def test_everything_holds_without_a_fault(baseline: dict[str, bool]) -> None:
@@ -54,7 +34,7 @@ def test_the_guard_notices(fault: Fault, case: VerificationCase, baseline: dict[
 @pytest.mark.long
 @pytest.mark.parametrize("source", ["trt", "r1", str(ROOT / "results" / "optimization" / "r2-caution-1.toml")])
 def test_any_design_can_be_used(source: str) -> None:
-    case = _case(source)
+    case = case_of(source)
     baseline = passing(case)
     assert all(baseline.values())
     for fault in faults():
@@ -79,8 +59,3 @@ def test_a_fault_that_no_check_can_see_is_reported_as_such(case: VerificationCas
     detection = inject(Fault("none", "nothing at all", "mean_power"), case, baseline)
     assert not detection.caught
     assert detection.as_json()["check"] is None
-
-
-def test_the_suite_measures_every_registered_check(case: VerificationCase) -> None:
-    names = {each.name for each in verify(case, FULL)} | {each.name for each in benchmarks()}
-    assert names == set(definitions())

@@ -1,13 +1,9 @@
-"""Crank moment by methods that share little, and the instruments that compare them."""
+"""Crank moment by methods that share little."""
 
 import numpy as np
-import pytest
 
 import fes_mj
-from fes_mj import kinematics
-from fes_mj.kinematics import Rotation
 from fes_mj.verification.case import VerificationCase
-from fes_mj.verification.geometry import fourier_derivative, rate_errors
 from fes_mj.verification.references import differences, exact_curves
 from fes_mj.verification.suite import servo_rounding
 
@@ -38,17 +34,3 @@ def test_measured_methods_agree_with_the_exact_ones(design: fes_mj.Design, smoot
     power = (curves["massive"]["torque sensor"] - curves["massive"]["mj_inverse"]) * case.cadence
     assert np.sqrt(np.mean(power**2)) < 0.01
     assert scale > 5
-
-
-def test_a_fourier_derivative_is_exact() -> None:
-    angle = np.linspace(0, 2 * np.pi, 64, endpoint=False)
-    assert fourier_derivative(np.exp(np.sin(angle))) == pytest.approx(np.cos(angle) * np.exp(np.sin(angle)), abs=1e-12)
-    assert fourier_derivative(np.exp(3j * angle)) == pytest.approx(3j * np.exp(3j * angle), abs=1e-12)
-
-
-def test_rate_errors_see_an_error_of_a_millionth(design: fes_mj.Design, monkeypatch: pytest.MonkeyPatch) -> None:
-    motion = kinematics.solve(design, np.linspace(0, 2 * np.pi, 512, endpoint=False))
-    assert max(rate_errors(motion)) < 1e-10
-    first, second = motion.rotation["thigh"]
-    motion.rotation["thigh"] = Rotation(first * (1 + 1e-6), second)
-    assert rate_errors(motion)[0] > 1e-8

@@ -1,0 +1,54 @@
+"""`fes_mj export`: model, table and scene, or one message and no file."""
+
+from importlib.resources import files
+from pathlib import Path
+from xml.etree import ElementTree
+
+import mujoco
+import pytest
+
+from fes_mj.cli.app import run
+
+
+def test_export_writes_model_table_and_scene(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    model = tmp_path / "mine.xml"
+    arguments = ["export", "d1", "-o", str(model), "--variant", "two-legs", "--variant", "passive", "--scene"]
+    assert run(arguments) == 0
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["mine.csv", "mine.xml", "scene.xml"]
+    loaded = mujoco.MjModel.from_xml_path(str(tmp_path / "scene.xml"))
+    assert (loaded.nu, loaded.nv) == (0, 9)
+    assert (tmp_path / "mine.csv").read_text().startswith("crank_angle_deg,right_knee_deg,")
+    assert str(model) in capsys.readouterr().out
+
+
+def test_any_file_name_gives_valid_xml(tmp_path: Path) -> None:
+    source = Path(str(files("fes_mj"))) / "data" / "designs" / "identified" / "r1.toml"
+    design, model = tmp_path / 'R&D --> "1".toml', tmp_path / 'R&D "1" <new>.xml'
+    design.write_text(source.read_text())
+    assert run(["export", str(design), "-o", str(model), "--scene"]) == 0
+    for path in (model, tmp_path / "scene.xml"):
+        ElementTree.parse(path)
+        assert mujoco.MjModel.from_xml_path(str(path)).njnt == 5
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["d1", "-o", "{folder}/x.xml", "--variant", "mjx"], "--variant"),
+        (["d1", "-o", "{folder}"], "this is a folder"),
+        (["d1", "-o", "{folder}/x.txt"], "must end in .xml"),
+        (["d1", "-o", "{folder}/none/x.xml"], "does not exist"),
+        (["d1", "-o", "{folder}/scene.xml", "--scene"], "another name"),
+        (["d1", "-o", "{folder}/x.xml", "--variant", "sites", "--variant", "bodies"], "exclude each other"),
+        (["r2", "--dims", "printed", "-o", "{folder}/x.xml"], "cannot close at crank angle"),
+    ],
+)
+def test_bad_input_is_one_message_and_no_file(
+    arguments: list[str], said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(["export", *(part.format(folder=tmp_path) for part in arguments)]) == 2
+    written = capsys.readouterr()
+    assert said in written.err
+    assert "Traceback" not in written.err
+    assert not written.out
+    assert not [*tmp_path.iterdir()]

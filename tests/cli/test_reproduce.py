@@ -1,0 +1,25 @@
+"""`fes_mj reproduce`: what it refuses before it computes."""
+
+import sys
+from pathlib import Path
+
+import pytest
+
+from fes_mj.cli.app import run
+
+
+def test_a_folder_that_cannot_be_made(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    assert run(["reproduce", "--out", str(tmp_path / "no" / "such")]) == 2
+    assert "cannot write the results: the folder does not exist" in capsys.readouterr().err
+    (tmp_path / "file").write_text("")
+    assert run(["reproduce", "--out", str(tmp_path / "file")]) == 2
+    assert "is not a folder" in capsys.readouterr().err
+
+
+def test_without_matplotlib_the_extra_is_named(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    assert run(["reproduce", "--out", str(tmp_path)]) == 3
+    assert "pip install 'fes-mj[video]'" in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())

@@ -1,0 +1,69 @@
+"""`fes_mj simulate`: the promised JSON, tables, files and exit codes."""
+
+import json
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fes_mj.design_file import load_design
+from fes_mj.time_step import steps_per_turn
+from tests.cli.conftest import answer, result
+
+
+def test_simulate_json_has_the_promised_keys(capsys: pytest.CaptureFixture[str]) -> None:
+    code, out, err = result(capsys, "simulate", "r1", "--group", "p1p3", "--json")
+    content = json.loads(out)
+    assert (code, err) == (0, "")
+    assert content["agrees"] is True
+    assert content["relative_difference"] == pytest.approx(
+        content["power_mean_W"] / content["static_power_mean_W"] - 1, abs=1e-12
+    )
+    assert 0 < content["loop_gap_max_m"] <= 1e-5
+    assert 0 < content["cadence_ripple"] <= 1e-4
+    assert {"name", "value", "limit", "ok"} <= set(content["checks"][0])
+    assert all(check["ok"] for check in content["checks"])
+
+
+def test_tables_carry_units_and_the_verdict(capsys: pytest.CaptureFixture[str]) -> None:
+    code, out, _ = result(capsys, "simulate", "trt", "-v", "--legs", "2", "--cadence", "55")
+    assert code == 0
+    for words in ("mean crank power, W", "knee angle, deg", "55.0 rpm", "Dynamic and static agree", "Energy over", "N"):
+        assert words in out
+    code, out, _ = result(capsys, "static", "r1", "-v")
+    assert (code, "Joint reactions" in out) == (0, True)
+    assert result(capsys, "simulate", "trt", "-q") == (0, "", "")
+
+
+def test_a_run_that_does_not_agree_exits_with_1(capsys: pytest.CaptureFixture[str]) -> None:
+    code, out, _ = result(capsys, "simulate", "d1", "--timestep", "0.004")
+    assert code == 1
+    assert "do not agree" in out
+    assert "FAILED" in out
+
+
+def test_out_writes_result_cycle_and_model(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    assert result(capsys, "simulate", "d2", "-q", "--out", str(tmp_path))[0] == 0
+    assert {path.name for path in tmp_path.iterdir()} == {"d2-p1p2.json", "d2-p1p2.csv", "d2-p1p2.xml"}
+    power = json.loads((tmp_path / "d2-p1p2.json").read_text())["power_mean_W"]
+    cycle = np.genfromtxt(tmp_path / "d2-p1p2.csv", delimiter=",", names=True)
+    assert cycle["crank_power_W"].mean() == pytest.approx(power, rel=1e-6)
+    assert cycle["quasi_static_power_W"].mean() == pytest.approx(power, rel=1e-3)
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may write anywhere")
+def test_a_folder_without_permission(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    tmp_path.chmod(0o500)
+    assert "no permission" in result(capsys, "simulate", "d1", "--out", str(tmp_path))[2]
+
+
+@pytest.mark.parametrize(("asked", "steps"), [([], None), (["--timestep", "0.0005"], 1245)])
+def test_the_json_reports_the_step_it_was_simulated_with(
+    asked: list[str], steps: int | None, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A whole number of a turn, chosen beforehand or nearest to what was asked for."""
+    _, content = answer(capsys, "simulate", "d1", *asked)
+    design = load_design("d1")
+    steps = steps or steps_per_turn(design, design.linkage.cadence)
+    assert content["timestep_s"] * steps == pytest.approx(60 / content["cadence_rpm"], rel=1e-12)

@@ -1,0 +1,44 @@
+"""`fes_mj static`: the promised JSON and notes."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.cli.conftest import result
+from tests.test_design_file import written
+
+
+def test_static_json_has_the_promised_keys(capsys: pytest.CaptureFixture[str]) -> None:
+    code, out, err = result(capsys, "static", "d1", "--json", "--curves")
+    content = json.loads(out)
+    assert (code, err) == (0, "")
+    assert (content["design"], content["group"]) == ("d1", "p1p2")
+    assert content["cadence_rpm"] == pytest.approx(96.4, abs=0.05)
+    assert content["work_per_turn_J"] == pytest.approx(content["power_mean_W"] * 60 / content["cadence_rpm"])
+    assert content["crank_angle_deg"] == list(range(360))
+    moment = np.array(content["crank_moment_Nm"])
+    assert moment.mean() * 2 * np.pi == pytest.approx(content["work_per_turn_J"], rel=1e-3)
+    for joint in ("knee", "hip"):
+        low, high = content[f"{joint}_range_deg"]
+        assert low <= min(content[f"{joint}_deg"]) <= max(content[f"{joint}_deg"]) <= high
+
+
+def test_power_of_recovered_moments_has_a_standard_deviation(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    content = json.loads(result(capsys, "static", "d1", "--json")[1])
+    assert 0.2 < content["power_sd_W"] < 0.6
+    assert f"31.11 +- {content['power_sd_W']:.2f}" in result(capsys, "static", "d1")[1]
+    own = tmp_path / "own.csv"
+    own.write_text("crank_angle_deg,knee_Nm,hip_Nm\n0,10,0\n90,20,0\n180,0,5\n270,-10,0\n")
+    assert json.loads(result(capsys, "static", "d1", "--moments", str(own), "--json")[1])["power_sd_W"] is None
+    assert "+-" not in result(capsys, "static", "d1", "--moments", str(own))[1]
+
+
+def test_joint_angles_without_data_are_mentioned(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    path = written(tmp_path, seat_angle="50.0")
+    code, out, _ = result(capsys, "static", str(path))
+    assert code == 0
+    assert "note: the hip moves 10.0 deg beyond the range of the moments (85.3 to 119.8 deg)" in out

@@ -1,0 +1,19 @@
+"""The paper's problem, which tests of every method solve."""
+
+from dataclasses import replace
+
+import fes_mj
+from fes_mj.cycles import WorkTable, joint_speeds
+from fes_mj.optimization.problem import Problem
+from fes_mj.optimization.problem_file import load_limits
+
+SIX_BARS = ("r1", "r2", "d1", "d2")
+TABLE = WorkTable.of(fes_mj.load_moments("p1p2"))
+
+
+def problem_of(name: str, grashof_min: float = 0.0) -> Problem:
+    """The paper's problem with the joint speeds of one of its designs."""
+    design = fes_mj.load_design(name)
+    speeds = joint_speeds(design, TABLE)
+    limits = replace(load_limits(), grashof_min=grashof_min)
+    return Problem(design, TABLE, limits, speeds.map(lambda speed: speed * (1 + 1e-9)))

@@ -1,0 +1,47 @@
+"""The criteria of Section 7 on cases with known answers."""
+
+import math
+
+import numpy as np
+import pytest
+
+import fes_mj
+from fes_mj import kinematics
+from fes_mj.fourier import fourier
+from fes_mj.moments import JointMoments
+from fes_mj.paper.metrics import extent, inactive_share, jump_weights, smoothing_weights
+from fes_mj.reference_tricycle import PAPER_TRICYCLE
+from fes_mj.statics import quasi_static
+from fes_mj.torque_map import TorqueMap
+
+
+def test_extent_of_the_trt() -> None:
+    """From the hip to the far side of the crank circle."""
+    motion = kinematics.solve(PAPER_TRICYCLE.design)
+    crank = PAPER_TRICYCLE.design.linkage.crank
+    assert extent(motion)[0] == pytest.approx(-PAPER_TRICYCLE.design.linkage.crank_centre.real + crank, abs=1e-5)
+
+
+def test_smoothing_against_the_solver() -> None:
+    """The functional against powers of moments smoothed by hand along the motion."""
+    random, few = np.random.default_rng(5), np.tile(np.r_[1, 1, 1, np.zeros(22), 1, 1, np.zeros(22)], 2)
+    coefficients, angle = random.normal(size=98) * few, np.radians(np.arange(0, 360, 0.1))
+    moments = JointMoments("random", angle, *(fourier(angle) @ half for half in np.split(coefficients, 2)))
+    result, width = quasi_static(fes_mj.load_design("r1"), moments), math.radians(5)
+    smoothed, torque_map = np.zeros(result.crank_angle.shape), TorqueMap(moments)
+    for joint, at in result.joint_angle.items():
+        rate = result.motion.joint_rate[joint]
+        own, other = (torque_map.moment(joint, at, sign * rate) for sign in (1, -1))
+        inside = np.clip(np.minimum(at - at.min(), at.max() - at) / width, 0, 1)
+        smoothed += rate * ((own + other) / 2 + inside * (own - other) / 2)
+    expected = result.power_mean - result.cadence * smoothed.mean()
+    assert smoothing_weights(result, width) @ coefficients == pytest.approx(expected, abs=2e-4)
+    low = result.joint_angle.knee.min()
+    jump = torque_map.moment("knee", low, 1.0) - torque_map.moment("knee", low, -1.0)
+    assert jump_weights(result)[0] @ coefficients == pytest.approx(float(jump), abs=1e-3)
+
+
+def test_inactive_share_of_a_sine() -> None:
+    angle = np.linspace(0, 2 * np.pi, 3600, endpoint=False)
+    assert inactive_share(np.sin(angle)) == pytest.approx(0.5, abs=1e-3)
+    assert inactive_share(2 + np.sin(angle)) == 0

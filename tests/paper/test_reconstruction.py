@@ -1,0 +1,90 @@
+"""The recovered moments: what is shipped is what the evidence gives, and evidence that contradicts itself is named."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import fes_mj
+from fes_mj import load_moments
+from fes_mj.errors import InputError
+from fes_mj.moments import GROUPS
+from fes_mj.paper.evidence import functional, load_evidence
+from fes_mj.paper.printed import DATA
+from fes_mj.paper.reconstruction import Posterior, choose_hyperparameters, condition, left_out_misses, reconstruct
+from fes_mj.statics import quasi_static
+
+
+@pytest.fixture(scope="module")
+def posteriors() -> dict[str, Posterior]:
+    return reconstruct(load_evidence()).posteriors
+
+
+def test_the_shipped_covariance_is_the_posteriors(posteriors: dict[str, Posterior]) -> None:
+    for group, posterior in posteriors.items():
+        shipped = fes_mj.load_moments(group).covariance
+        assert shipped is not None
+        assert np.abs(shipped - posterior.covariance).max() < 1e-2  # (N m)^2, by the search for the hyperparameters
+        design = fes_mj.load_design("d1")
+        assert quasi_static(design, fes_mj.load_moments(group)).power_sd == pytest.approx(
+            posterior.predict(quasi_static(design, fes_mj.load_moments(group)).power_weights)[1], rel=1e-3
+        )
+
+
+@pytest.mark.parametrize("group", GROUPS)
+def test_the_shipped_csv_is_the_posterior_mean(group: str) -> None:
+    rows = load_evidence()
+    posterior = condition([row for row in rows if row.group == group], choose_hyperparameters(rows))
+    shipped, fresh = load_moments(group), posterior.moments(group)
+    assert np.abs(shipped.knee - fresh.knee).max() < 1e-3
+    assert np.abs(shipped.hip - fresh.hip).max() < 1e-3
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "name"),
+    [
+        ("value = 31.29", "value = 90.0", "p1p2 power in D1"),
+        ("value = 16.2\n", "value = 61.0\n", "p1p3 power in TRT"),
+        ("value = 20.0", "value = 400.0", "p1p2 knee extending at 73 deg"),
+    ],
+)
+def test_evidence_that_contradicts_itself_is_named(old: str, new: str, name: str, tmp_path: Path) -> None:
+    path, text = tmp_path / "evidence.toml", (DATA / "evidence.toml").read_text()
+    assert old in text
+    path.write_text(text.replace(old, new, 1))
+    with pytest.raises(InputError, match=rf"evidence '{name}' contradicts the rest: it lies .* standard dev"):
+        reconstruct(load_evidence(path))
+
+
+def test_the_quick_way_to_leave_rows_out_is_the_long_one() -> None:
+    """Closed form against conditioning on the other rows, and never below the residual."""
+    evidence = load_evidence()
+    chosen = choose_hyperparameters(evidence)
+    for group in GROUPS:
+        rows = [row for row in evidence if row.group == group]
+        posterior = condition(rows, chosen)
+        for row, miss in zip(rows, left_out_misses(rows, chosen), strict=True):
+            weights, value, error = functional(row)
+            mean, deviation = condition([other for other in rows if other is not row], chosen).predict(weights)
+            assert miss == pytest.approx((value - mean) / math.hypot(deviation, error), rel=1e-6, abs=1e-9)
+            assert abs(miss) >= abs(value - posterior.predict(weights)[0]) / error - 1e-9
+
+
+def test_a_row_left_out_is_predicted_less_surely() -> None:
+    evidence = load_evidence()
+    recovered = reconstruct(evidence)
+    for row in evidence:
+        weights, _, _ = functional(row)
+        others = [other for other in evidence if other.group == row.group and other is not row]
+        _, fitted = recovered.posteriors[row.group].predict(weights)
+        _, left_out = condition(others, recovered.hyperparameters).predict(weights)
+        assert left_out >= fitted, row.name
+
+
+def test_what_was_used_comes_back(posteriors: dict[str, Posterior]) -> None:
+    (row,) = (row for row in load_evidence() if row.name == "p1p2 knee extending at 73 deg")
+    weights, value, error = functional(row)
+    recovered, _ = posteriors[row.group].predict(weights)
+    assert value == 20
+    assert abs(recovered - value) < error

@@ -1,0 +1,57 @@
+"""Closing, joint ranges and transmission, against other ways to the same numbers."""
+
+import math
+
+import numpy as np
+import pytest
+
+from fes_mj import kinematics
+from fes_mj.design import Design, Linkage
+from fes_mj.errors import AssemblyError
+from fes_mj.geometry import grashof_margin, joint_ranges, require_assembly, transmission_angles
+from fes_mj.kinematics import FULL_TURN
+from fes_mj.reference_tricycle import PAPER_TRICYCLE
+
+
+def test_what_cannot_close_is_named_with_its_crank_angle() -> None:
+    """R2 of the printed CRT R2: longest reach 0.53 m, needed 0.5301 m when the crank points away from the pivot."""
+    printed = Design("r2", Linkage("crt", -0.62 + 0.32j, 0.04, 0.08, -0.49 + 0.01j, 0.15, 0.44, 0.09))
+    with pytest.raises(AssemblyError, match=r"r2: rocker and coupler cannot close at crank angle 179.0 deg.*0\.5301 m"):
+        require_assembly(printed)
+    far = Design("far", Linkage("trt", -1.0 - 0.4j, 0.15, 0.069))
+    with pytest.raises(AssemblyError, match=r"far: thigh and shank cannot close at crank angle 20[12]\.\d deg"):
+        require_assembly(far)
+
+
+def test_transmission_angle_of_the_trt() -> None:
+    """By the law of cosines at the two ends."""
+    motion = kinematics.solve(PAPER_TRICYCLE.design)
+    frame, crank = abs(PAPER_TRICYCLE.design.linkage.crank_centre), PAPER_TRICYCLE.design.linkage.crank
+    thigh, shank = PAPER_TRICYCLE.design.rider.thigh, float(PAPER_TRICYCLE.design.knee_to_pedal)
+
+    def at_knee(span: float) -> float:
+        angle = math.degrees(math.acos((thigh**2 + shank**2 - span**2) / (2 * thigh * shank)))
+        return min(angle, 180 - angle)
+
+    assert transmission_angles(motion)["knee"] == pytest.approx(
+        min(at_knee(frame - crank), at_knee(frame + crank)), abs=0.01
+    )
+
+
+def test_joint_ranges_are_those_of_the_closed_form() -> None:
+    """An extreme is missed by half a step at most, over which the angle turns round with its largest curvature."""
+    design, half_step = PAPER_TRICYCLE.design, np.pi / len(FULL_TURN)
+    curvature = max(np.abs(rotation[1]).max() for rotation in kinematics.solve(design).joint_rotation)
+    exact = np.degrees([*PAPER_TRICYCLE.ranges.knee, *PAPER_TRICYCLE.ranges.hip])
+    assert joint_ranges(design) == pytest.approx(exact, rel=0, abs=np.degrees(curvature * half_step**2 / 2))
+
+
+def test_grashofs_inequality_tells_which_cranks_turn() -> None:
+    """They do where rocker and coupler reach both positions of the crank in line with the frame."""
+    random = np.random.default_rng(0)
+    frame, coupler, rocker = random.uniform(0.2, 0.6, (3, 1000, 1))
+    crank = random.uniform(0.01, 0.2, (1000, 1))
+    linkage = Linkage("cdt", 0j, crank, 0.0, pivot_to_crank=frame * 1j, coupler=coupler, rocker=rocker)
+    turns = (np.abs(rocker - coupler) < frame - crank) & (frame + crank < rocker + coupler)
+    assert 0 < turns.sum() < 1000
+    assert np.array_equal(grashof_margin(Design("batch", linkage)) > 0, turns)

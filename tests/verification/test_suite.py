@@ -1,0 +1,10 @@
+"""The suite leaves out no check."""
+
+from fes_mj.checks import definitions
+from fes_mj.verification.case import VerificationCase
+from fes_mj.verification.suite import FULL, benchmarks, verify
+
+
+def test_the_suite_measures_every_registered_check(case: VerificationCase) -> None:
+    names = {each.name for each in verify(case, FULL)} | {each.name for each in benchmarks()}
+    assert names == set(definitions())
