@@ -8,8 +8,8 @@ from rich.console import Console
 
 Item = TypeVar("Item")
 
-output = Console(highlight=False)
-errors = Console(stderr=True, highlight=False)
+output = Console(emoji=False, highlight=False)
+errors = Console(emoji=False, stderr=True, highlight=False)
 
 
 def say(text: str, style: str | None = None) -> None:
