@@ -11,8 +11,8 @@ from fes_mj import kinematics
 from fes_mj.arrays import ComplexArray, FloatArray
 from fes_mj.checks import LEAST_POWER, Check, check
 from fes_mj.design import Design
+from fes_mj.extrapolation import require_motion
 from fes_mj.files import csv_text
-from fes_mj.geometry import require_assembly
 from fes_mj.inverse_dynamics import body_loads
 from fes_mj.joints import PerJoint
 from fes_mj.kinematics import Motion
@@ -101,7 +101,7 @@ class Case:
 
     def static_at(self, points: int) -> QuasiStatic:
         """The quasi-static turn at another number of crank angles."""
-        require_assembly(self.design)
+        require_motion(self.design, self.moments.measured_on)
         motion = self.motion(np.linspace(0, 2 * np.pi, points, endpoint=False))
         joint_moment = self.joint_moment(motion)
         return QuasiStatic(motion, self.torque, self.cadence, joint_moment, *self.equilibrium(motion, joint_moment))
@@ -149,8 +149,8 @@ class Case:
 
     @property
     def difference_text(self) -> str:
-        """The same for people: in percent, or in W where the static mean is zero."""
-        if np.isfinite(self.relative_difference):
+        """The same for people: in percent, or in W where the static mean is too small for it to mean anything."""
+        if abs(self.static.power_mean) >= LEAST_POWER:
             return f"{100 * self.relative_difference:+.4f} %"
         return f"{self.simulation.power_mean - self.static.power_mean:+.4f} W"
 

@@ -5,16 +5,17 @@ the loops it draws in the moment-angle plane: a sum over its reversals, where no
 """
 
 import math
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, fields
-from typing import Any, TypeAlias
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.integrate import cumulative_trapezoid
 
-from fes_mj.arrays import FloatArray, IntArray
+from fes_mj.arrays import BoolArray, FloatArray, IntArray
+from fes_mj.batch import batch_size, take
 from fes_mj.design import Design
+from fes_mj.geometry import SCAN, clearances, turning
 from fes_mj.joints import PerJoint
 from fes_mj.kinematics import joint_angles, positions
 from fes_mj.moments import JointMoments
@@ -25,7 +26,7 @@ from fes_mj.torque_map import torque_map
 Moments: TypeAlias = Callable[[str, FloatArray], FloatArray]
 
 # Against 36,000 angles the work per turn of the printed designs changes by less than 2e-5 of itself.
-TURN_POINTS = 120
+TURN_POINTS = len(SCAN)
 # Positions in a block: its arrays stay in the processor's cache, where a position costs half of what it does outside.
 BLOCK_POSITIONS = 8000
 _TABLE_STEPS = 5400  # over the 1.5 turns that source_angle returns
@@ -69,13 +70,15 @@ class WorkTable:
 
 @dataclass(frozen=True)
 class Cycles:
-    """One turn of each design; NaN for those that do not close over the whole turn.
+    """One turn of each design; NaN for those that do not turn (geometry.turning).
 
-    reach: shape (designs,), m, what the leg has left before it is stretched or folded flat; negative if it lacks.
+    turns: shape (designs,). reach: shape (designs,), m, what the leg has left before it is stretched or folded flat;
+    negative if it lacks.
     low, high, travel: by joint, shape (designs,), rad: smallest and largest angle, and the way made in a turn.
     reversals: by joint, shape (designs,), how often it turns round. work: shape (designs, sets), J a turn and leg.
     """
 
+    turns: BoolArray
     reach: FloatArray
     low: PerJoint[FloatArray]
     high: PerJoint[FloatArray]
@@ -94,31 +97,24 @@ def cycles(design: Design, table: WorkTable, points: int = TURN_POINTS) -> Cycle
     parts = [
         _turn(take(design, slice(start, start + size)), crank_angle) for start in range(0, batch_size(design), size)
     ]
-    reach = np.concatenate([part[0] for part in parts])
+    reach, turns = (np.concatenate([part[i] for part in parts]) for i in (0, 1))
     first_rows, work = size * np.arange(len(parts)), np.zeros((len(reach), table.sets))
-    work[~(reach > 0)] = np.nan
+    work[~turns] = np.nan
 
     def of_joint(joint: str) -> tuple[FloatArray, FloatArray, FloatArray, IntArray]:
         """Smallest and largest angle, travel and reversals of a joint; its work is added to the others'."""
-        found = [part[1][joint] for part in parts]
+        found = [part[2][joint] for part in parts]
         rows = np.concatenate([each[0] + first for each, first in zip(found, first_rows, strict=True)])
         angle, sign = (np.concatenate([each[i] for each in found]) for i in (1, 2))
         low, high = np.full((2, len(reach)), np.nan)
         np.fmin.at(low, rows, angle)
         np.fmax.at(high, rows, angle)
         np.add.at(work, rows, sign[:, None] * table.area(joint, angle))
-        travel = np.where(reach > 0, 2 * np.bincount(rows, sign * angle, len(reach)), np.nan)
+        travel = np.where(turns, 2 * np.bincount(rows, sign * angle, len(reach)), np.nan)
         return low, high, travel, np.bincount(rows, minlength=len(reach))
 
-    turns = PerJoint.of(of_joint)
-    return Cycles(
-        reach,
-        low=turns.map(lambda turn: turn[0]),
-        high=turns.map(lambda turn: turn[1]),
-        travel=turns.map(lambda turn: turn[2]),
-        reversals=turns.map(lambda turn: turn[3]),
-        work=work,
-    )
+    low, high, travel, count = (PerJoint(*each) for each in zip(*PerJoint.of(of_joint), strict=True))
+    return Cycles(turns, reach, low, high, travel, count, work)
 
 
 def joint_speeds(design: Design, table: WorkTable) -> PerJoint[float]:
@@ -128,41 +124,18 @@ def joint_speeds(design: Design, table: WorkTable) -> PerJoint[float]:
     )
 
 
-def batch_size(design: Design) -> int:
-    """Number of designs in a batch; 1 for a single design."""
-    return max((len(value) for _, _, value in _arrays(design)), default=1)
-
-
-def take(design: Design, rows: Any) -> Design:
-    """The designs of a batch at `rows` (an index array, a mask or a slice), as a batch."""
-    changes: dict[str, dict[str, Any]] = {"linkage": {}, "rider": {}}
-    for owner, name, value in _arrays(design):
-        changes[owner][name] = value[rows]
-    return design.changed(**changes)
-
-
-def _arrays(design: Design) -> Iterator[tuple[str, str, NDArray[Any]]]:
-    for owner in ("linkage", "rider"):
-        part = getattr(design, owner)
-        for field in fields(part):
-            value = getattr(part, field.name)
-            if isinstance(value, np.ndarray):
-                yield owner, field.name, value
-
-
 Reversals: TypeAlias = tuple[IntArray, FloatArray, FloatArray]
 
 
-def _turn(design: Design, crank_angle: FloatArray) -> tuple[FloatArray, PerJoint[Reversals]]:
-    """Reach of the leg, reversals of knee and hip of one block."""
+def _turn(design: Design, crank_angle: FloatArray) -> tuple[FloatArray, BoolArray, PerJoint[Reversals]]:
+    """Reach of the leg, whether it turns, reversals of knee and hip of one block."""
     points = positions(design, crank_angle)
-    pedal = np.atleast_2d(np.abs(points["pedal"]))
-    thigh, shank = (np.ravel(length) for length in (design.rider.thigh, design.knee_to_pedal))
-    reach = np.minimum(thigh + shank - pedal.max(axis=1), pedal.min(axis=1) - np.abs(thigh - shank))
     angles = joint_angles(design, points).map(np.atleast_2d)
+    dyads = clearances(design, points if len(crank_angle) == len(SCAN) else None)
+    turns = turning(dyads, angles.hip)
     for angle in angles:
-        angle[~(reach > 0)] = 0.0  # one that does not close stays at rest
-    return reach, angles.map(reversals)
+        angle[~turns] = 0.0  # one that does not turn stays at rest
+    return dyads[-1].margin, turns, angles.map(reversals)
 
 
 def reversals(angle: FloatArray) -> Reversals:

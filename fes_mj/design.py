@@ -48,6 +48,7 @@ class Architecture:
         return {point: pair for point, pair in joints.items() if {*pair} <= {"frame", *self.bodies}}
 
 
+BRANCHES = {"left": 1, "right": -1}
 _FOUR_BAR = ("thigh", "shank", "crank")
 _SIX_BAR = (*_FOUR_BAR, "rocker", "coupler")
 ARCHITECTURES = {
@@ -75,6 +76,7 @@ class Linkage:
     coupler_angle: float = math.pi / 2  # gamma: from the coupler line to the pedal arm (CDT)
     gear_ratio: float = 1.31  # lambda: crank turns per wheel turn
     seat_angle: float = math.pi / 6  # theta_b
+    branch: str = "left"  # side of pivot -> crank pin on which the rocker joint lies, one of BRANCHES
 
     @property
     def architecture(self) -> Architecture:

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from fes_mj.design import ARCHITECTURES, Design, Linkage, Rider
+from fes_mj.design import ARCHITECTURES, BRANCHES, Design, Linkage, Rider
 from fes_mj.errors import InputError
 from fes_mj.files import Section, is_number, read_toml
 from fes_mj.segments import DE_LEVA
@@ -37,15 +37,16 @@ def _read(path: Path) -> Design:
     content.only(("linkage", "rider"))
     linkage, rider = content.section("linkage"), content.section("rider")
     kind, sex = linkage.choice("kind", ARCHITECTURES), rider.choice("sex", DE_LEVA, Rider.sex)
-    return Design(
-        path.stem, Linkage(kind, **_values(linkage, kind, "kind")), Rider(sex=sex, **_values(rider, kind, "sex"))
-    )
+    words = ("kind",) if kind == "trt" else ("kind", "branch")
+    numbers = _values(linkage, kind, *words)
+    branch = linkage.choice("branch", BRANCHES, Linkage.branch)
+    return Design(path.stem, Linkage(kind, **numbers, branch=branch), Rider(sex=sex, **_values(rider, kind, "sex")))
 
 
-def _values(section: Section, kind: str, other: str) -> dict[str, Any]:
-    """Attributes in SI and radians of one table, every key checked; `other` is its key that is no number."""
+def _values(section: Section, kind: str, *words: str) -> dict[str, Any]:
+    """Attributes in SI and radians of one table, every key checked; `words` are its keys that are no numbers."""
     known = _variables(section.name, kind)
-    section.only((*known, other))
+    section.only((*known, *words))
     for symbol, variable in known.items():
         if variable.needed:
             section.require([symbol], f"a {kind} needs {variable.allowed}")
@@ -79,6 +80,8 @@ def design_toml(design: Design, comment: str = "") -> str:
         ("rider", design.rider, f'sex = "{design.rider.sex}"'),
     ):
         lines += [f"[{table}]", head]
+        if owner is design.linkage and design.linkage.branch != Linkage.branch:
+            lines.append(f'branch = "{design.linkage.branch}"')
         for symbol, variable in _variables(table, kind).items():
             lines.append(f"{symbol} = {_written(getattr(owner, variable.attribute), variable)}")
     return "\n".join(lines) + "\n"

@@ -1,36 +1,154 @@
-"""A linkage before any force acts: does it close, how far do its joints go, how well does it transmit?"""
+"""A linkage before any force acts: does it turn, how far do its joints go, how well does it transmit?"""
+
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from fes_mj.arrays import FloatArray
+from fes_mj.arrays import BoolArray, ComplexArray, FloatArray
+from fes_mj.batch import batch_size, take
 from fes_mj.design import Design
 from fes_mj.errors import AssemblyError
-from fes_mj.kinematics import FULL_TURN, Motion, Points, joint_angles, positions
+from fes_mj.kinematics import FULL_TURN, Motion, Points, joint_angles, positions, solve
 
 # Links of each dyad -> the points they span, and the joint between them.
 DYADS = {
     ("rocker", "coupler"): ("rocker_pivot", "crank_pin", "rocker_joint"),
     ("thigh", "shank"): ("hip", "pedal", "knee"),
 }
+# m: closer to a dead centre the motion is not determined. Lengths are not made more exactly, and nearer than this the
+# scheme's step runs into rounding (results/time_step.md: of linkages 0.1 to 30 mm away one in 200 is refused for it).
+LEAST_CLEARANCE = 1e-4
+# Angles between which the extremes of the leg's span are sought. A rocker LEAST_CLEARANCE from its dead centre passes
+# it within 2 deg, in which the pedal moves by a few millimetres: less than _NEAR, within which extremes are exact.
+SCAN = np.linspace(0.0, 2 * np.pi, 120, endpoint=False)
+_NEAR = 0.02  # m
+LARGEST_SWING = np.pi  # rad, of the thigh: more than any hip can do
+_BISECTIONS = 40
+
+
+class Clearance(NamedTuple):
+    """How far a dyad stays from its dead centres, stretched and folded, over a turn; arrays of shape (designs,).
+
+    margin: m, negative if the links cannot close, NaN where the dyad before it does not. span: of the dyad's ends at
+    the least margin, m, at crank_angle, rad.
+    """
+
+    links: tuple[str, str]
+    margin: FloatArray
+    span: FloatArray
+    crank_angle: FloatArray
+
+
+def clearances(design: Design, points: Points | None = None) -> list[Clearance]:
+    """Clearance of every dyad, from the extremes of the distance it spans. points: `positions` at SCAN, if known.
+
+    A circle's extremes are known, those of the coupler curve (and the rocker's arc) are zeros of the radial velocity.
+    """
+    linkage = design.linkage
+    if "coupler" not in linkage.architecture.bodies:
+        return [_clearance(design, ("thigh", "shank"), *_of_circle(linkage.crank_centre, linkage.crank))]
+    pedal = np.atleast_2d((points or positions(design, SCAN))["pedal"])
+    return [_rocker_clearance(design), _clearance(design, ("thigh", "shank"), *_of_pedal(design, pedal))]
+
+
+def _rocker_clearance(design: Design) -> Clearance:
+    circle = _of_circle(design.linkage.pivot_to_crank, design.linkage.crank)
+    return _clearance(design, ("rocker", "coupler"), *circle)
+
+
+def _of_circle(centre: Any, radius: Any) -> tuple[FloatArray, FloatArray]:
+    """Smallest and largest distance of a circle from the origin, m, and where, rad; shape (2, designs)."""
+    distance, angle = np.ravel(np.abs(centre)), np.ravel(np.angle(centre))
+    radius = np.ravel(radius)
+    return np.stack([np.abs(distance - radius), distance + radius]), np.stack([angle + np.pi, angle])
+
+
+def _of_pedal(design: Design, pedal: ComplexArray) -> tuple[FloatArray, FloatArray]:
+    """The same for hip and pedal; pedal: at SCAN, shape (designs, angles)."""
+    distance = np.broadcast_to(np.abs(pedal), (batch_size(design), len(SCAN)))
+    ends = np.stack([distance.argmin(axis=1), distance.argmax(axis=1)])
+    spans, angles = np.take_along_axis(distance, ends.T, axis=1).T, SCAN[ends]
+    lengths = [np.ravel(length) for length in (design.rider.thigh, design.knee_to_pedal)]
+    margins = np.stack([spans[0] - np.abs(lengths[0] - lengths[1]), lengths[0] + lengths[1] - spans[1]])
+    for end, sign in enumerate((-1, 1)):  # every local extreme that could be the one
+        height = sign * distance
+        peak = (height >= np.roll(height, 1, axis=1)) & (height > np.roll(height, -1, axis=1))
+        peak &= (margins[end][:, None] < _NEAR) & (height > sign * spans[end][:, None] - _NEAR)
+        rows, columns = np.nonzero(peak)
+        if rows.size:
+            exact_angle = _extreme(take(design, rows), SCAN[columns], sign)
+            exact = np.abs(positions(take(design, rows), exact_angle)["pedal"])[:, 0]
+            for row, value, angle in zip(rows, exact, exact_angle[:, 0], strict=True):
+                if not sign * value < sign * spans[end, row]:
+                    spans[end, row], angles[end, row] = value, angle
+    return spans, angles
+
+
+def _extreme(design: Design, angle: FloatArray, sign: int) -> FloatArray:
+    """Crank angles, shape (designs, 1), within a step of `angle` where the pedal's distance stops to grow (sign 1)."""
+    low, high = angle[:, None] - SCAN[1], angle[:, None] + SCAN[1]
+    for _ in range(_BISECTIONS):
+        middle = (low + high) / 2
+        pedal = solve(design, middle).points["pedal"]
+        growing = sign * (np.conj(pedal.value) * pedal.first).real > 0
+        low, high = np.where(growing, middle, low), np.where(growing, high, middle)
+    return np.asarray(low)
+
+
+def _clearance(design: Design, links: tuple[str, str], spans: FloatArray, angles: FloatArray) -> Clearance:
+    shortest, longest = _reach(design, links)
+    margins = np.stack([spans[0] - shortest, longest - spans[1]])
+    worst = np.argmin(margins, axis=0)[None]
+    margin, span, angle = (
+        np.take_along_axis(each, worst, axis=0)[0] for each in np.broadcast_arrays(margins, spans, angles)
+    )
+    return Clearance(links, margin, span, angle % (2 * np.pi))
+
+
+def _reach(design: Design, links: tuple[str, str]) -> tuple[FloatArray, FloatArray]:
+    """Shortest and longest distance that two links span, m, shape (designs,)."""
+    first, second = (np.ravel(design.link_lengths[link]) for link in links)
+    return np.abs(first - second), first + second
+
+
+def turning(dyads: list[Clearance], hip: FloatArray) -> BoolArray:
+    """Which designs turn right round, determinately; hip: its angle over the turn, rad, shape (designs, angles)."""
+    with np.errstate(invalid="ignore"):
+        turns = np.ptp(hip, axis=1) < LARGEST_SWING
+    for dyad in dyads:
+        turns = turns & (dyad.margin >= LEAST_CLEARANCE)
+    return np.asarray(turns)
 
 
 def require_assembly(design: Design) -> None:
-    """Raise AssemblyError, naming the links and the crank angle, unless the linkage closes over the whole turn."""
-    points, link_lengths = positions(design, FULL_TURN), design.link_lengths
-    for (first, second), (start, end, joint) in DYADS.items():
-        if joint not in points:
-            continue
-        span = np.broadcast_to(np.abs(points[end] - points[start]), FULL_TURN.shape)
-        shortest = abs(link_lengths[first] - link_lengths[second])
-        longest = link_lengths[first] + link_lengths[second]
-        excess = np.maximum(span - longest, shortest - span)
-        worst = int(np.argmax(excess))
-        if excess[worst] >= 0:
-            raise AssemblyError(
-                f"{design.name}: {first} and {second} cannot close at crank angle "
-                f"{np.degrees(FULL_TURN[worst]):.1f} deg: {start.replace('_', ' ')} and {end.replace('_', ' ')} are "
-                f"{span[worst]:.4f} m apart there, the two links reach from {shortest:.4f} to {longest:.4f} m"
+    """Raise AssemblyError, naming links, crank angle and margin, unless the linkage turns right round."""
+    points = positions(design, SCAN)
+    for links, margin, span, angle in clearances(design, points):
+        if margin[0] < LEAST_CLEARANCE:
+            first, second = links
+            start, end, _ = (name.replace("_", " ") for name in DYADS[links])
+            shortest, longest = (float(length[0]) for length in _reach(design, links))
+            where = f"at crank angle {np.degrees(angle[0]):.1f} deg"
+            apart = (
+                f"{start} and {end} are {span[0]:.4f} m apart there, the two links reach from {shortest:.4f} to "
+                f"{longest:.4f} m"
             )
+            if margin[0] < 0:
+                raise AssemblyError(
+                    f"{design.name}: {first} and {second} cannot close {where}: {apart}; {-1e3 * margin[0]:.4g} mm lack"
+                )
+            state = "in line" if span[0] > (shortest + longest) / 2 else "folded flat"
+            raise AssemblyError(
+                f"{design.name}: {first} and {second} are all but {state} {where}: {apart}; "
+                f"{1e3 * margin[0]:.2g} mm from a dead centre, where the motion is not determined; "
+                f"{1e3 * LEAST_CLEARANCE:g} mm are needed"
+            )
+    swing = float(np.ptp(joint_angles(design, points).hip))
+    if swing >= LARGEST_SWING:
+        raise AssemblyError(
+            f"{design.name}: the thigh swings through {np.degrees(swing):.0f} deg; no hip moves by "
+            f"{np.degrees(LARGEST_SWING):.0f} deg or more"
+        )
 
 
 def joint_ranges(design: Design, crank_angle: FloatArray = FULL_TURN) -> FloatArray:
@@ -46,11 +164,9 @@ def joint_ranges(design: Design, crank_angle: FloatArray = FULL_TURN) -> FloatAr
 def grashof_margin(design: Design) -> FloatArray:
     """Grashof's inequality with the crank as shortest link: sum of the other two less crank and longest link, m.
 
-    Shape (), or (designs, 1) for a batch.
+    The same as the rocker dyad's clearance. Shape (designs,), (1,) for a single design.
     """
-    linkage = design.linkage
-    others = np.sort(np.stack([np.abs(linkage.pivot_to_crank), linkage.coupler, linkage.rocker]), axis=0)
-    return np.asarray(others[0] + others[1] - others[2] - linkage.crank)
+    return _rocker_clearance(design).margin
 
 
 def transmission_angles(motion: Motion) -> dict[str, float]:

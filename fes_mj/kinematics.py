@@ -72,9 +72,9 @@ def positions(design: Design, crank_angle: FloatArray) -> Points:
     with np.errstate(invalid="ignore", divide="ignore"):
         if "coupler" in linkage.architecture.bodies:
             points["rocker_pivot"] = np.asarray(linkage.ground)
-            points["rocker_joint"] = _close_dyad(
-                points["rocker_pivot"], points["crank_pin"], linkage.rocker, linkage.coupler
-            )
+            ends = (points["rocker_pivot"], linkage.rocker), (points["crank_pin"], linkage.coupler)
+            (start, first), (end, second) = ends if linkage.branch == "left" else ends[::-1]
+            points["rocker_joint"] = _close_dyad(start, end, first, second)
         origin, tip = (points[name] for name in BODIES[linkage.architecture.pedal_body])
         points["pedal"] = origin + (tip - origin) * linkage.pedal_offset
         # knee above the hip-pedal line: the pedal lies on the rider's -x side, so that is right of hip -> pedal
@@ -123,11 +123,15 @@ class Motion:
 def joint_angles(design: Design, points: Points) -> PerJoint[FloatArray]:
     """Joint angles of given positions, rad, growing in extension.
 
-    Knee: phi_k = pi - theta_3 + theta_4 - atan(R6 / R5). Hip: phi_h = theta_4 - theta_b in [0, 2 pi).
+    Knee: phi_k = pi - theta_3 + theta_4 - atan(R6 / R5). Hip: phi_h = theta_4 - theta_b, at the first crank angle in
+    [-pi/2, 3 pi/2), from there on without jumps.
     """
     knee = points["knee"]
     bend = np.angle((points["hip"] - knee) * np.conj(points["pedal"] - knee))
-    return PerJoint(bend - design.boot_angle, np.mod(np.angle(knee) - design.linkage.seat_angle, 2 * np.pi))
+    hip = np.mod(np.angle(knee) - design.linkage.seat_angle + np.pi / 2, 2 * np.pi) - np.pi / 2
+    if np.fmax.reduce(hip, axis=None) - np.fmin.reduce(hip, axis=None) > np.pi:  # some may pass the cut
+        hip = np.unwrap(hip)
+    return PerJoint(bend - design.boot_angle, hip)
 
 
 def solve(design: Design, crank_angle: FloatArray = FULL_TURN) -> Motion:

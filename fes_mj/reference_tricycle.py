@@ -59,13 +59,28 @@ class ReferenceTricycle:
     def source_angle(self, joint: str, angle: Any, rate: Any) -> FloatArray:
         """Crank angle at which this tricycle had `joint` at `angle` moving the same way.
 
-        angle: rad, any shape; beyond the range its nearest end is used. rate: its sign is the direction, zero is
-        extension. Returns rad from top dead centre in (-pi, 2 pi].
+        angle: rad, any shape; beyond the range its end that is nearer, round the circle, is used. rate: its sign is
+        the direction, zero is extension. Returns rad from top dead centre in (-pi, 2 pi].
         """
-        angle = np.clip(angle, *self.ranges[joint])
+        angle = np.clip(self.around(joint, angle), *self.ranges[joint])
         inverse = INVERSES[joint](np, lambda value: np.acos(np.clip(value, -1.0, 1.0)))
         direction = np.where(np.asarray(rate) >= 0, 1.0, -1.0)
         return np.asarray(inverse(self.inverse_geometry[joint], angle, direction))
+
+    def around(self, joint: str, angle: Any) -> FloatArray:
+        """Angles, rad, any shape, by whole turns so that they lie within half a turn of the range's middle."""
+        middle = sum(self.ranges[joint]) / 2
+        return np.asarray(angle - 2 * np.pi * np.floor((angle - middle) / (2 * np.pi) + 0.5))
+
+    def excess(self, joint: str, angle: Any) -> FloatArray:
+        """How far angles (rad, any shape) lie beyond the nearer end of the range, rad; negative below it, 0 inside."""
+        angle = self.around(joint, angle)
+        return np.asarray(angle - np.clip(angle, *self.ranges[joint]))
+
+    def half_range(self, joint: str) -> float:
+        """Half the width of the range, rad."""
+        low, high = self.ranges[joint]
+        return (high - low) / 2
 
     def joint_rates(self, crank_angle: FloatArray) -> PerJoint[FloatArray]:
         """Joint speed per crank speed at crank angles from top dead centre, rad."""

@@ -1,5 +1,6 @@
 """Quasi-static crank moment and joint reactions: free-body equilibrium, and virtual work beside it."""
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -11,7 +12,7 @@ from fes_mj import kinematics
 from fes_mj.arrays import ComplexArray, FloatArray
 from fes_mj.design import BODIES, Design
 from fes_mj.errors import InputError
-from fes_mj.geometry import require_assembly
+from fes_mj.extrapolation import NO_MORE, Extrapolation, extrapolation, require_motion
 from fes_mj.joints import PerJoint
 from fes_mj.kinematics import Jet, Motion
 from fes_mj.moments import JointMoments
@@ -92,9 +93,19 @@ class QuasiStatic:
 
     @property
     def power_sd(self) -> float | None:
-        """Standard deviation of power_mean, W, by the error of recovered moments; None for a user's own moments."""
+        """Standard deviation of power_mean, W, by the error of recovered moments and where there are none.
+
+        None for a user's own moments, of whose error nothing is known.
+        """
         covariance = self.moments.covariance
-        return None if covariance is None else standard_deviation(self.power_weights, covariance)
+        if covariance is None:
+            return None
+        return math.hypot(standard_deviation(self.power_weights, covariance), self.extrapolation.sd)
+
+    @cached_property
+    def extrapolation(self) -> Extrapolation:
+        """What of the turn has no data."""
+        return extrapolation(self.motion, self.torque, self.joint_moment, self.cadence)
 
     @property
     def joint_range_deg(self) -> PerJoint[list[float]]:
@@ -104,14 +115,20 @@ class QuasiStatic:
     @property
     def notes(self) -> list[str]:
         """What a reader must know of the result: joint angles for which the torque map has no data."""
-        remarks = []
-        for joint, (low, high) in self.torque.reference.ranges.items():
-            beyond = max(low - self.joint_angle[joint].min(), self.joint_angle[joint].max() - high)
-            if beyond > np.radians(0.01):
-                remarks.append(
-                    f"the {joint} moves {np.degrees(beyond):.1f} deg beyond the range of the moments "
-                    f"({np.degrees(low):.1f} to {np.degrees(high):.1f} deg); the moment at its end is kept there"
-                )
+        found = self.extrapolation
+        remarks = [
+            f"the {joint} moves {np.degrees(excess):.1f} deg beyond the range of the moments "
+            f"({low:.1f} to {high:.1f} deg); the moment at its end is kept there"
+            for joint, excess in found.excess.items()
+            for low, high in [np.degrees(self.torque.reference.ranges[joint])]
+            if excess > NO_MORE
+        ]
+        if remarks:
+            remarks.append(
+                f"EXTRAPOLATED for {100 * found.share:.1f} % of the turn, in which {100 * found.work_share:.1f} % of "
+                f"the work is done: no moments were measured there, which makes the mean power unsure by another "
+                f"{found.sd:.2g} W"
+            )
         return remarks
 
     def summary(self) -> dict[str, Any]:
@@ -127,6 +144,9 @@ class QuasiStatic:
             "work_per_turn_J": self.work_per_turn,
             "knee_range_deg": self.joint_range_deg.knee,
             "hip_range_deg": self.joint_range_deg.hip,
+            "extrapolated_share": self.extrapolation.share,
+            "extrapolated_work_share": self.extrapolation.work_share,
+            "extrapolation_sd_W": self.extrapolation.sd,
             "notes": self.notes,
         }
 
@@ -139,7 +159,7 @@ def quasi_static(
     cadence: crank speed in rad/s, by default the design's own (Eq. 16). points: crank angles from 0, uniform.
     Raises AssemblyError if the linkage does not close over the whole turn.
     """
-    require_assembly(design)
+    require_motion(design, moments.measured_on)
     motion = kinematics.solve(design, np.linspace(0, 2 * np.pi, points, endpoint=False))
     torque, cadence = torque_map(moments), cadence or design.linkage.cadence
     joint_moment = torque.along(motion, cadence)
@@ -156,7 +176,8 @@ def difference_sd(one: QuasiStatic, other: QuasiStatic, factor: float = 1.0) -> 
         return None
     if covariance is not theirs and not np.array_equal(covariance, theirs):
         raise InputError(f"{one.moments.name} and {other.moments.name} are different moments: nothing correlates them")
-    return standard_deviation(one.power_weights - factor * other.power_weights, covariance)
+    by_moments = standard_deviation(one.power_weights - factor * other.power_weights, covariance)
+    return math.hypot(by_moments, one.extrapolation.sd, factor * other.extrapolation.sd)
 
 
 def ratio_sd(one: QuasiStatic, other: QuasiStatic) -> float | None:

@@ -7,7 +7,7 @@ import numpy as np
 
 from fes_mj import kinematics
 from fes_mj.arrays import ComplexArray, FloatArray
-from fes_mj.design import BODIES, Design
+from fes_mj.design import BODIES, BRANCHES, Design
 from fes_mj.segments import GRAVITY, inertias
 
 # Crank angles at which the error is evaluated: a dyad 0.1 mm from its dead centre passes it within 2 deg.
@@ -95,8 +95,7 @@ def _pose(design: Design, crank_angle: FloatArray, step: float) -> _Pose:
         tip = end + sum(arm for _, arm in arms) + gap - start
         velocity = sum(1j * arm * rates[link] for link, arm in arms)
         lengths = [design.link_lengths[body] for body in dyad]
-        # the knee lies right of hip -> pedal, the rocker joint left of pivot -> crank pin
-        side = -1 if dyad[0] == "thigh" else 1
+        side = -1 if dyad[0] == "thigh" else BRANCHES[linkage.branch]  # the knee lies right of hip -> pedal
         along = 0.5 + (lengths[0] ** 2 - lengths[1] ** 2) / (2 * np.abs(tip) ** 2)
         links[dyad[0]] = tip * (along + side * 1j * np.sqrt(lengths[0] ** 2 / np.abs(tip) ** 2 - along**2))
         links[dyad[1]] = tip - links[dyad[0]]

@@ -108,7 +108,9 @@ def scalar_map(
 
     def moment(where: Any, table: Any, angle: float, rate: float) -> float:
         geometry, low, high = where
-        angle = low if angle < low else high if angle > high else angle
+        if not low <= angle <= high:  # as ReferenceTricycle.around, and the nearer end
+            angle -= 2 * math.pi * math.floor((angle - (low + high) / 2) / (2 * math.pi) + 0.5)
+            angle = low if angle < low else high if angle > high else angle
         position = source(geometry, angle, 1.0 if rate >= 0 else -1.0) * scale
         if position < 0:
             position += TABLE_SIZE

@@ -1,22 +1,28 @@
 """Closing, joint ranges and transmission, against other ways to the same numbers."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given
 
 from fes_mj import kinematics
-from fes_mj.design import Design, Linkage
+from fes_mj.design import Design, Linkage, Rider
+from fes_mj.design_file import load_design
 from fes_mj.errors import AssemblyError
-from fes_mj.geometry import grashof_margin, joint_ranges, require_assembly, transmission_angles
+from fes_mj.geometry import DYADS, clearances, grashof_margin, joint_ranges, require_assembly, transmission_angles
 from fes_mj.kinematics import FULL_TURN
 from fes_mj.reference_tricycle import PAPER_TRICYCLE
+from tests.linkages import designs
 
 
 def test_what_cannot_close_is_named_with_its_crank_angle() -> None:
     """R2 of the printed CRT R2: longest reach 0.53 m, needed 0.5301 m when the crank points away from the pivot."""
     printed = Design("r2", Linkage("crt", -0.62 + 0.32j, 0.04, 0.08, -0.49 + 0.01j, 0.15, 0.44, 0.09))
-    with pytest.raises(AssemblyError, match=r"r2: rocker and coupler cannot close at crank angle 179.0 deg.*0\.5301 m"):
+    with pytest.raises(
+        AssemblyError, match=r"r2: rocker and coupler cannot close at crank angle 178.8 deg.*0\.5301 m.*0\.102 mm lack"
+    ):
         require_assembly(printed)
     far = Design("far", Linkage("trt", -1.0 - 0.4j, 0.15, 0.069))
     with pytest.raises(AssemblyError, match=r"far: thigh and shank cannot close at crank angle 20[12]\.\d deg"):
@@ -54,4 +60,40 @@ def test_grashofs_inequality_tells_which_cranks_turn() -> None:
     linkage = Linkage("cdt", 0j, crank, 0.0, pivot_to_crank=frame * 1j, coupler=coupler, rocker=rocker)
     turns = (np.abs(rocker - coupler) < frame - crank) & (frame + crank < rocker + coupler)
     assert 0 < turns.sum() < 1000
-    assert np.array_equal(grashof_margin(Design("batch", linkage)) > 0, turns)
+    assert np.array_equal(grashof_margin(Design("batch", linkage)) > 0, turns.ravel())
+
+
+@given(designs())
+def test_clearances_are_those_of_a_fine_search(design: Design) -> None:
+    points = kinematics.positions(design, np.linspace(0, 2 * np.pi, 200_001))
+    for links, margin, span, angle in clearances(design):
+        start, end, _ = DYADS[links]
+        spans = np.abs(points[end] - points[start])
+        one, other = (float(design.link_lengths[link]) for link in links)
+        searched = min(one + other - spans.max(), spans.min() - abs(one - other))
+        assert margin[0] == pytest.approx(searched, abs=1e-8 if searched < 0.02 else 1e-3)
+        there = kinematics.positions(design, angle)
+        assert span[0] == pytest.approx(np.abs(there[end] - there[start]).item(), abs=1e-12)
+
+
+@pytest.mark.parametrize("short", [5e-7, 1e-5, 0.9e-4])
+@pytest.mark.parametrize("kind", ["stretched", "folded"])
+def test_what_is_too_close_to_a_dead_centre_is_refused_by_name(kind: str, short: float) -> None:
+    """Rocker and coupler of D1, shortened until they lack so much, or have no more than that to spare."""
+    d1 = load_design("d1")
+    pivot, crank = abs(d1.linkage.pivot_to_crank), d1.linkage.crank
+    for margin, said in ((-short, "mm lack"), (short, "motion is not determined; 0.1 mm are needed")):
+        if kind == "stretched":
+            changed = replace(d1.linkage, coupler=pivot + crank - d1.linkage.rocker + margin)
+        else:
+            changed = replace(d1.linkage, coupler=pivot - crank + d1.linkage.rocker - margin)
+        design = replace(d1, linkage=changed)
+        assert clearances(design)[0].margin[0] == pytest.approx(margin, abs=1e-12)
+        with pytest.raises(AssemblyError, match=rf"d1: rocker and coupler .* deg: .*{said}"):
+            require_assembly(design)
+
+
+def test_a_thigh_that_turns_right_round_is_refused() -> None:
+    round_the_hip = Design("around", Linkage("trt", 0.05 + 0j, 0.3, 0.0), Rider(0.3, 0.3))
+    with pytest.raises(AssemblyError, match=r"around: the thigh swings through 3[0-9][0-9] deg"):
+        require_assembly(round_the_hip)

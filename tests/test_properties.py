@@ -86,6 +86,22 @@ def test_the_mirror_image_closes_on_the_other_branch(design: Design) -> None:
     assert mirrored == pytest.approx(np.conj(points["knee"]), abs=1e-12)
 
 
+@given(designs(("crt", "cdt")))
+def test_the_mirror_image_of_a_rocker_has_the_other_branch(design: Design) -> None:
+    linkage = design.linkage
+    mirrored = replace(
+        linkage,
+        ground=linkage.ground.conjugate(),
+        pivot_to_crank=linkage.pivot_to_crank.conjugate(),
+        coupler_angle=-linkage.coupler_angle,
+        branch="left" if linkage.branch == "right" else "right",
+    )
+    points = kinematics.positions(replace(design, linkage=mirrored), -ANGLES)
+    original = kinematics.positions(design, ANGLES)
+    for name in ("rocker_joint", "pedal"):
+        assert points[name] == pytest.approx(np.conj(original[name]), abs=1e-12)
+
+
 @given(designs(), periodic_moments(), between(1, 12))
 def test_masses_do_not_feel_which_way_the_crank_turns(design: Design, moments: JointMoments, cadence: float) -> None:
     forwards, backwards = (
@@ -116,10 +132,13 @@ def test_power_is_linear_in_the_gear_ratio(design: Design, moments: JointMoments
 @settings(max_examples=20)
 def test_a_batch_is_its_designs(each: list[Design]) -> None:
     """One call on a batch gives what one call a design gives."""
-    fields = [name for name in Linkage.__dataclass_fields__ if name != "kind"]
+    fields = [name for name in Linkage.__dataclass_fields__ if name not in ("kind", "branch")]
+    each = [design for design in each if design.linkage.branch == each[0].linkage.branch]
     column = {name: np.array([getattr(design.linkage, name) for design in each])[:, None] for name in fields}
     legs = {name: np.array([getattr(design.rider, name) for design in each])[:, None] for name in ("thigh", "shank")}
-    batch = replace(each[0], linkage=Linkage("cdt", **column), rider=replace(each[0].rider, **legs))
+    batch = replace(
+        each[0], linkage=Linkage("cdt", **column, branch=each[0].linkage.branch), rider=replace(each[0].rider, **legs)
+    )
     together = kinematics.solve(batch, ANGLES)
     for row, design in enumerate(each):
         alone = kinematics.solve(design, ANGLES)

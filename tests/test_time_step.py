@@ -7,8 +7,10 @@ import pytest
 
 import fes_mj
 from fes_mj.crosscheck import Case
+from fes_mj.geometry import clearances
 from fes_mj.time_step import FEWEST_STEPS, MOST_STEPS, steps_per_turn
 from fes_mj.units import RPM
+from tools.random_linkages import random_design
 
 
 def test_the_step_follows_the_sharpness_of_the_motion() -> None:
@@ -20,7 +22,7 @@ def test_the_step_follows_the_sharpness_of_the_motion() -> None:
     far = abs(sharp.linkage.crank_centre) + sharp.linkage.crank
     stretched = replace(sharp, linkage=replace(sharp.linkage, ground=sharp.linkage.ground * (reach - 1e-3) / far))
     assert steps_per_turn(stretched, 60 * RPM) == FEWEST_STEPS
-    closer = replace(sharp, linkage=replace(sharp.linkage, crank=reach - 1e-5 - abs(sharp.linkage.crank_centre)))
+    closer = replace(sharp, linkage=replace(sharp.linkage, crank=reach - 1.1e-4 - abs(sharp.linkage.crank_centre)))
     assert steps_per_turn(closer, 60 * RPM) > 2 * FEWEST_STEPS
 
 
@@ -39,11 +41,11 @@ def test_what_does_not_fit_into_memory_is_refused_with_a_way_out() -> None:
 
 
 def test_what_moves_too_sharply_is_refused_before_it_runs() -> None:
-    trt = fes_mj.load_design("trt")
-    crank = trt.rider.thigh + float(trt.knee_to_pedal) - abs(trt.linkage.crank_centre) - 5e-7
-    edge = replace(trt, name="edge", linkage=replace(trt.linkage, crank=crank))
-    with pytest.raises(fes_mj.InputError, match=r"edge: at 200 rpm the run needs .*slower --cadence"):
+    edge = random_design(np.random.default_rng(776))  # both dyads 0.2 mm from their dead centres
+    assert max(each.margin[0] for each in clearances(edge)) < 2.1e-4
+    with pytest.raises(fes_mj.InputError, match=r"random: at 200 rpm the run needs .*slower --cadence"):
         steps_per_turn(edge, 200 * RPM)
+    assert steps_per_turn(edge, 20 * RPM) < MOST_STEPS
 
 
 def test_the_near_edge_of_closing_agrees() -> None:

@@ -43,7 +43,7 @@ MOMENTS = load_moments("p1p2")
 def population(design: Design, count: int, step: float = 0.002) -> np.ndarray:
     """Lengths of designs around one, all of which turn, shape (9, count)."""
     drawn = lengths(design)[:, None] + np.random.default_rng(0).uniform(-step, step, (9, 2 * count))
-    closed = np.flatnonzero(cycles(with_lengths(design, drawn[..., None]), WorkTable.of(MOMENTS)).reach > 0)
+    closed = np.flatnonzero(cycles(with_lengths(design, drawn[..., None]), WorkTable.of(MOMENTS)).turns)
     return drawn[:, closed[:count]]
 
 

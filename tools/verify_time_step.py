@@ -3,7 +3,7 @@
     python -m tools.verify_time_step [--random 200] [--seed 1] [--out results/time_step.md]
 
 The paper's and the optimised designs at seven cadences with the moments of group p1p2 and with random ones, the former
-at 1 and 2 rpm as well, and random linkages 0.1 to 30 mm from where they no longer close, at two cadences each.
+at 1 and 2 rpm as well, and random linkages 0.15 to 30 mm from their dead centres, at two cadences each.
 """
 
 from __future__ import annotations
@@ -12,29 +12,26 @@ import argparse
 import math
 import time
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 import fes_mj
-from fes_mj import kinematics
 from fes_mj.checks import Check
 from fes_mj.console import track
 from fes_mj.crosscheck import Case
-from fes_mj.design import Design, Linkage, Rider
+from fes_mj.design import Design
 from fes_mj.design_file import DESIGNS
 from fes_mj.files import write_text
 from fes_mj.step_error import predicted_errors
 from fes_mj.table import Table
 from fes_mj.time_step import SHARE, TRIAL, steps_per_turn
 from fes_mj.units import RPM
+from tools.random_linkages import random_design, random_moments
 
 ROOT = Path(__file__).parents[1]
 CADENCES, SLOW = (10, 30, 60, 93, 120, 160, 200), (1, 2)  # rpm
-FINE = np.linspace(0, 2 * np.pi, 7200, endpoint=False)
-EDGE = 5e-5  # m, closer to a dead centre no linkage is drawn
 
 
 @dataclass(frozen=True)
@@ -74,70 +71,6 @@ def trials(count: int, seed: int = 1) -> Iterator[Trial]:
         for rpm in rng.choice(CADENCES, 2, replace=False):
             yield Trial("random", design, group, float(rpm), legs=1 + int(rng.random() < 0.3))
             yield Trial("random", design, random_moments(rng), float(rpm))
-
-
-def random_moments(rng: np.random.Generator) -> fes_mj.JointMoments:
-    """A Fourier series of three harmonics for each joint, as tests/linkages.py draws it."""
-    angle = np.radians(np.arange(0.0, 360.0))
-
-    def curve() -> np.ndarray:
-        mean = rng.uniform(2, 10)
-        return np.asarray(
-            mean + sum(rng.uniform(-8, 8) * np.cos(k * angle + rng.uniform(0, 2 * np.pi)) for k in (1, 2, 3))
-        )
-
-    return fes_mj.JointMoments("random", angle, curve(), curve())
-
-
-def random_design(rng: np.random.Generator) -> Design:
-    """A linkage that turns all the way round, half of them close to the edge of it."""
-    while (design := _draw(rng)) is None:
-        pass
-    return design
-
-
-def _draw(rng: np.random.Generator) -> Design | None:
-    uniform, kind = rng.uniform, str(rng.choice(["trt", "crt", "cdt"]))
-    rider = Rider(uniform(0.4, 0.6), uniform(0.4, 0.6), uniform(45, 110), str(rng.choice(["male", "female"])))
-    foot, margin = uniform(-0.05, 0.15), 10 ** uniform(-4, math.log10(0.03))
-    linkage = Linkage(kind, 0j, uniform(0.1, 0.2), foot)
-    if kind != "trt":
-        pivot, coupler, rocker = uniform(0.25, 0.5), uniform(0.25, 0.5), uniform(0.1, 0.25)
-        # the dyad of rocker and coupler reaches from pivot - crank to pivot + crank, but for the margin
-        longest = min(rocker + coupler - pivot, pivot - abs(rocker - coupler)) - 10 ** uniform(-4, math.log10(0.03))
-        if not 0.03 < longest < 0.2:
-            return None
-        crank = longest if rng.random() < 0.5 else uniform(0.02, longest)
-        pivot *= np.exp(1j * uniform(2.4, 3.6))
-        linkage = Linkage(kind, 0j, crank, foot, complex(pivot), uniform(0.02, 0.18), coupler, rocker)
-    shape: dict[str, Any] = {"seat_angle": uniform(0, 1.2), "coupler_angle": uniform(0.5, 2.5)}
-    design = Design("random", replace(linkage, gear_ratio=uniform(0.5, 3), **shape), rider)
-    return _seated(rng, design, margin, np.exp(1j * uniform(2.6, 3.7)))
-
-
-def _seated(rng: np.random.Generator, design: Design, margin: float, direction: complex) -> Design | None:
-    """With the hip where the leg reaches the pedal, or only just does, stretched or folded; None if nowhere."""
-    with np.errstate(invalid="ignore"):
-        path = kinematics.positions(design, FINE)["pedal"]
-    farthest = design.rider.thigh + float(design.knee_to_pedal)
-    nearest = abs(design.rider.thigh - float(design.knee_to_pedal))
-    distance = np.linspace(0.2, 1.3, 1101)
-    spans = np.abs(path[::10] - path.mean() + distance[:, None] * direction)
-    low, high = spans.min(axis=1), spans.max(axis=1)
-    inside = np.flatnonzero((high < farthest - margin) & (low > max(nearest + margin, 0.15)))
-    if not inside.size:
-        return None
-    stretched = float(np.interp(farthest - margin, high[inside[-1] :], distance[inside[-1] :]))
-    folded = float(np.interp(nearest + margin, low[: inside[0] + 1], distance[: inside[0] + 1]))
-    seat = float(rng.choice([float(rng.choice(distance[inside])), stretched, folded])) * direction
-    ground = complex(design.linkage.ground - path.mean() + seat)
-    design = replace(design, linkage=replace(design.linkage, ground=ground))
-    with np.errstate(invalid="ignore"):
-        span = np.abs(kinematics.positions(design, FINE)["pedal"])
-    if not (max(nearest + EDGE, 0.15) < span.min() and span.max() < farthest - EDGE):
-        return None
-    # the model's hip angle runs on through zero while the torque map starts again at 2 pi: another matter than the step
-    return design if np.ptp(kinematics.solve(design, FINE).joint_angle.hip) < 3 else None
 
 
 def run(trial: Trial) -> Outcome:

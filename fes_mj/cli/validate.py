@@ -16,8 +16,8 @@ from fes_mj.cli.simulate import check_rows
 from fes_mj.console import output, print_table, track
 from fes_mj.design_file import DESIGNS
 from fes_mj.errors import InputError
+from fes_mj.extrapolation import require_motion
 from fes_mj.files import json_text, require_writable, write_text
-from fes_mj.geometry import require_assembly
 from fes_mj.provenance import provenance
 
 if TYPE_CHECKING:
@@ -88,7 +88,7 @@ def _cases(designs: Sequence[str], options: RunOptions, quick: bool) -> Iterator
         printed = table1()[design] if design in DESIGNS and options.dims == "identified" else None
         for choice in chosen:
             case = VerificationCase(*choice.load(design), expected=printed, refined=not quick)
-            require_assembly(case.design)
+            require_motion(case.design, case.moments.measured_on)
             yield case
 
 

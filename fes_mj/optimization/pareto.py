@@ -7,7 +7,7 @@ import numpy as np
 
 from fes_mj import kinematics
 from fes_mj.arrays import FloatArray
-from fes_mj.cycles import take
+from fes_mj.batch import take
 from fes_mj.design import Design
 from fes_mj.errors import InputError, require_extra
 from fes_mj.moments import GROUPS, JointMoments

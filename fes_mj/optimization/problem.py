@@ -8,7 +8,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from fes_mj.arrays import BoolArray, FloatArray
-from fes_mj.cycles import TURN_POINTS, Cycles, WorkTable, cycles, joint_speeds, take
+from fes_mj.batch import take
+from fes_mj.cycles import TURN_POINTS, Cycles, WorkTable, cycles, joint_speeds
 from fes_mj.design import Design
 from fes_mj.design_file import load_design
 from fes_mj.errors import InputError

@@ -50,7 +50,7 @@ def identify(
     def margins(shift: FloatArray) -> FloatArray:
         design = candidate(shift)
         error = np.nan_to_num(joint_ranges(design) - wanted, nan=180.0)
-        return np.array([*(RANGE_TOLERANCE - error), *(RANGE_TOLERANCE + error), 100 * float(grashof_margin(design))])
+        return np.array([*(RANGE_TOLERANCE - error), *(RANGE_TOLERANCE + error), 100 * grashof_margin(design).item()])
 
     random, best, found = np.random.default_rng(_SEED), None, False
     for trial in range(_STARTS):

@@ -96,7 +96,7 @@ def ranges_table() -> Table:
             except AssemblyError:
                 ranges, error = [], None
             verdict = "cannot turn" if error is None else "yes" if error <= 0.5 else "no"
-            margin = None if name == "trt" else 100 * float(grashof_margin(design))
+            margin = None if name == "trt" else 100 * grashof_margin(design).item()
             rows.append((name.upper(), dims, _span(wanted, 0), _span(ranges, 1), error, verdict, margin))
     return captioned("ranges", rows)
 

@@ -79,12 +79,12 @@ def draw(spec: Spec, design: Design, legs: Sequence[Leg]) -> None:
 
 
 def _bar(spec: Spec, body: str, part: str, name: str, start: tuple[complex, float], end: tuple[complex, float]) -> None:
-    """A geom of the class `part` between two points of a body, each (in the plane, across it), m."""
+    """A geom of the class `part` between two points of a body, each (in the plane, across it), m; none if they meet."""
     (first, first_y), (second, second_y) = start, end
     ends = (np.real(first), first_y, np.imag(first), np.real(second), second_y, np.imag(second))
-    spec.body(body).add_geom(
-        spec.find_default(part), name=name, fromto=[round(float(value), 4) + 0.0 for value in ends]
-    )
+    rounded = [round(float(value), 4) + 0.0 for value in ends]
+    if rounded[:3] != rounded[3:]:  # MuJoCo takes no capsule without length
+        spec.body(body).add_geom(spec.find_default(part), name=name, fromto=rounded)
 
 
 def _draw_limb(spec: Spec, design: Design, leg: Leg) -> None:

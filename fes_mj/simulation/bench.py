@@ -9,6 +9,7 @@ import numpy as np
 
 from fes_mj.arrays import ComplexArray, FloatArray
 from fes_mj.design import LEGS, Design, Leg
+from fes_mj.extrapolation import require_motion
 from fes_mj.joints import JOINTS, PerJoint
 from fes_mj.moments import JointMoments
 from fes_mj.segments import GRAVITY
@@ -45,7 +46,8 @@ class Simulation:
 
     Dictionaries are by joint name ("hip", "knee", "crank", "rocker", "coupler"; with two legs "right_hip" ...; moments
     only of hips and knees), the loop ones by the name of the cut joint ("pedal", "crank_pin"). A loop's force is
-    complex, in the linkage's plane, and sampled at every eighth step (FORCE_EVERY).
+    complex, in the linkage's plane, that of the first body named by Architecture.joints on the second, as
+    QuasiStatic.reactions, and sampled at every eighth step (FORCE_EVERY).
     """
 
     design: Design
@@ -121,9 +123,11 @@ def simulate(
 
     make_loop: compiled.compiled_loop steps in machine code, which pays beyond some hundred turns. torque: another map
     instead. edit: changes the MjSpec before it is compiled. pre_roll: steps before the first that is measured. Raises
-    AssemblyError if the linkage does not close, UnstableError if the integration breaks down.
+    InputError for a linkage that does not turn and for joints that never enter the moments' range, UnstableError if the
+    integration breaks down.
     """
     cadence, torque = cadence or design.linkage.cadence, torque or torque_map(moments)
+    require_motion(design, torque.reference)
     spec = build_mjcf(
         design,
         cadence=cadence,
@@ -175,7 +179,7 @@ def _measured(model: mujoco.MjModel, run: Run, torque: TorqueMap, drives: dict[s
         "joint_speed": speed,
         "joint_moment": moment,
         "loop_gap": {loop: np.linalg.norm(rows.vector(f"{loop}_gap")[1:-1], axis=1) for loop in loops},
-        "loop_force": {loop: forces[:, 3 * i] + 1j * forces[:, 3 * i + 2] for i, loop in enumerate(closed)},
+        "loop_force": {loop: -forces[:, 3 * i] - 1j * forces[:, 3 * i + 2] for i, loop in enumerate(closed)},
         "energy": Energy(
             joint_work=sum(work(moment[name], speed[name]) for name in drives),
             crank_work=work(crank_moment, speed["crank"]),

@@ -136,7 +136,7 @@ def _static(design: Design, values: Columns, moments: JointMoments, count: int) 
     cadence = rpm * RPM
     result = {
         "cadence_rpm": rpm,
-        "turns": (turn.reach > 0) & (shape > 0),
+        "turns": turn.turns & (shape > 0),
         "power_mean_W": turn.work[:, 0] * cadence / (2 * np.pi),
         "work_per_turn_J": turn.work[:, 0] * shape,
     }

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from fes_mj.arrays import BoolArray
 from fes_mj.checks import Check
 from fes_mj.crosscheck import Case
-from fes_mj.design import BODIES
+from fes_mj.design import BODIES, BRANCHES
 from fes_mj.joints import JOINTS
 from fes_mj.kinematics import Motion, cross
 
@@ -46,7 +46,8 @@ def wrong_branch(motion: Motion) -> float:
     wrong: BoolArray = ~(cross(point["pedal"] - point["hip"], point["knee"] - point["hip"]) < 0)
     if "rocker_joint" in point:
         pivot = point["rocker_pivot"]
-        wrong |= ~(cross(point["crank_pin"] - pivot, point["rocker_joint"] - pivot) > 0)
+        side = BRANCHES[motion.design.linkage.branch]
+        wrong |= ~(side * cross(point["crank_pin"] - pivot, point["rocker_joint"] - pivot) > 0)
     return float(np.sum(wrong))
 
 

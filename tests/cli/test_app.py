@@ -14,7 +14,7 @@ from tests.cli.conftest import result
     ("arguments", "words"),
     [
         (["static", "x9"], "x9: no such design"),
-        (["static", "r2", "--dims", "printed"], "r2: rocker and coupler cannot close at crank angle 179.0 deg"),
+        (["static", "r2", "--dims", "printed"], "r2: rocker and coupler cannot close at crank angle 178.8 deg"),
         (["simulate", "r2", "--dims", "printed"], "cannot close"),
         (["static", "d1", "--group", "p9"], 'Invalid value "p9" for --group'),
         (["static", "d1", "--group", "p1p2", "--moments", "x.csv"], "--group and --moments exclude each other"),
