@@ -16,7 +16,7 @@ DYADS = {
     ("thigh", "shank"): ("hip", "pedal", "knee"),
 }
 # m: closer to a dead centre the motion is not determined. Lengths are not made more exactly, and nearer than this the
-# scheme's step runs into rounding (results/time_step.md: of linkages 0.1 to 30 mm away one in 200 is refused for it).
+# time step runs into rounding at high speed; results/time_step.md has what agrees from 0.15 mm on.
 LEAST_CLEARANCE = 1e-4
 # Angles between which the extremes of the leg's span are sought. A rocker LEAST_CLEARANCE from its dead centre passes
 # it within 2 deg, in which the pedal moves by a few millimetres: less than _NEAR, within which extremes are exact.
