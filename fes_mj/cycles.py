@@ -15,7 +15,7 @@ from scipy.integrate import cumulative_trapezoid
 from fes_mj.arrays import BoolArray, FloatArray, IntArray
 from fes_mj.batch import batch_size, take
 from fes_mj.design import Design
-from fes_mj.geometry import SCAN, clearances, turning
+from fes_mj.geometry import SCAN, turning
 from fes_mj.joints import PerJoint
 from fes_mj.kinematics import joint_angles, positions
 from fes_mj.moments import JointMoments
@@ -97,7 +97,8 @@ def cycles(design: Design, table: WorkTable, points: int = TURN_POINTS) -> Cycle
     parts = [
         _turn(take(design, slice(start, start + size)), crank_angle) for start in range(0, batch_size(design), size)
     ]
-    reach, turns = (np.concatenate([part[i] for part in parts]) for i in (0, 1))
+    reach, swing = (np.concatenate([part[i] for part in parts]) for i in (0, 1))
+    turns = turning(design, reach, swing)
     first_rows, work = size * np.arange(len(parts)), np.zeros((len(reach), table.sets))
     work[~turns] = np.nan
 
@@ -109,6 +110,7 @@ def cycles(design: Design, table: WorkTable, points: int = TURN_POINTS) -> Cycle
         low, high = np.full((2, len(reach)), np.nan)
         np.fmin.at(low, rows, angle)
         np.fmax.at(high, rows, angle)
+        low[~turns] = high[~turns] = np.nan
         np.add.at(work, rows, sign[:, None] * table.area(joint, angle))
         travel = np.where(turns, 2 * np.bincount(rows, sign * angle, len(reach)), np.nan)
         return low, high, travel, np.bincount(rows, minlength=len(reach))
@@ -127,15 +129,16 @@ def joint_speeds(design: Design, table: WorkTable) -> PerJoint[float]:
 Reversals: TypeAlias = tuple[IntArray, FloatArray, FloatArray]
 
 
-def _turn(design: Design, crank_angle: FloatArray) -> tuple[FloatArray, BoolArray, PerJoint[Reversals]]:
-    """Reach of the leg, whether it turns, reversals of knee and hip of one block."""
+def _turn(design: Design, crank_angle: FloatArray) -> tuple[FloatArray, FloatArray, PerJoint[Reversals]]:
+    """Reach of the leg, swing of the thigh, reversals of knee and hip of one block."""
     points = positions(design, crank_angle)
+    pedal = np.atleast_2d(np.abs(points["pedal"]))
+    thigh, shank = (np.ravel(length) for length in (design.rider.thigh, design.knee_to_pedal))
+    reach = np.minimum(thigh + shank - pedal.max(axis=1), pedal.min(axis=1) - np.abs(thigh - shank))
     angles = joint_angles(design, points).map(np.atleast_2d)
-    dyads = clearances(design, points if len(crank_angle) == len(SCAN) else None)
-    turns = turning(dyads, angles.hip)
     for angle in angles:
-        angle[~turns] = 0.0  # one that does not turn stays at rest
-    return dyads[-1].margin, turns, angles.map(reversals)
+        angle[~(reach > 0)] = 0.0  # one that does not close stays at rest
+    return reach, np.ptp(angles.hip, axis=1), angles.map(reversals)
 
 
 def reversals(angle: FloatArray) -> Reversals:

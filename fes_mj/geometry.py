@@ -21,9 +21,9 @@ LEAST_CLEARANCE = 1e-4
 # Angles between which the extremes of the leg's span are sought. A rocker LEAST_CLEARANCE from its dead centre passes
 # it within 2 deg, in which the pedal moves by a few millimetres: less than _NEAR, within which extremes are exact.
 SCAN = np.linspace(0.0, 2 * np.pi, 120, endpoint=False)
-_NEAR = 0.02  # m
+_NEAR = 0.01  # m
 LARGEST_SWING = np.pi  # rad, of the thigh: more than any hip can do
-_BISECTIONS = 40
+_ITERATIONS = 10
 
 
 class Clearance(NamedTuple):
@@ -86,13 +86,16 @@ def _of_pedal(design: Design, pedal: ComplexArray) -> tuple[FloatArray, FloatArr
 
 def _extreme(design: Design, angle: FloatArray, sign: int) -> FloatArray:
     """Crank angles, shape (designs, 1), within a step of `angle` where the pedal's distance stops to grow (sign 1)."""
-    low, high = angle[:, None] - SCAN[1], angle[:, None] + SCAN[1]
-    for _ in range(_BISECTIONS):
-        middle = (low + high) / 2
-        pedal = solve(design, middle).points["pedal"]
-        growing = sign * (np.conj(pedal.value) * pedal.first).real > 0
-        low, high = np.where(growing, middle, low), np.where(growing, high, middle)
-    return np.asarray(low)
+    angle = angle[:, None]
+    low, high = angle - SCAN[1], angle + SCAN[1]
+    for _ in range(_ITERATIONS):  # Newton's, kept between the two angles by halves
+        value, first, second = solve(design, angle).points["pedal"]
+        slope = (np.conj(value) * first).real
+        growing = sign * slope > 0
+        low, high = np.where(growing, angle, low), np.where(growing, high, angle)
+        angle = angle - slope / (np.abs(first) ** 2 + (np.conj(value) * second).real)
+        angle = np.where((low < angle) & (angle < high), angle, (low + high) / 2)
+    return np.asarray(angle)
 
 
 def _clearance(design: Design, links: tuple[str, str], spans: FloatArray, angles: FloatArray) -> Clearance:
@@ -111,13 +114,18 @@ def _reach(design: Design, links: tuple[str, str]) -> tuple[FloatArray, FloatArr
     return np.abs(first - second), first + second
 
 
-def turning(dyads: list[Clearance], hip: FloatArray) -> BoolArray:
-    """Which designs turn right round, determinately; hip: its angle over the turn, rad, shape (designs, angles)."""
-    with np.errstate(invalid="ignore"):
-        turns = np.ptp(hip, axis=1) < LARGEST_SWING
-    for dyad in dyads:
-        turns = turns & (dyad.margin >= LEAST_CLEARANCE)
-    return np.asarray(turns)
+def turning(design: Design, reach: FloatArray, swing: FloatArray) -> BoolArray:
+    """Which designs of a batch turn right round, as require_assembly decides; shape (designs,).
+
+    reach: clearance of the leg at SCAN, m, made exact where it is small. swing: of the thigh, rad.
+    """
+    turns = (reach > 0) & (swing < LARGEST_SWING)
+    if "coupler" in design.linkage.architecture.bodies:
+        turns = turns & (_rocker_clearance(design).margin >= LEAST_CLEARANCE)
+    doubtful = np.flatnonzero(turns & (reach < _NEAR))
+    if doubtful.size:
+        reach[doubtful] = clearances(take(design, doubtful))[-1].margin
+    return np.asarray(turns & (reach >= LEAST_CLEARANCE))
 
 
 def require_assembly(design: Design) -> None:

@@ -8,11 +8,21 @@ import pytest
 from hypothesis import given
 
 from fes_mj import kinematics
+from fes_mj.cycles import WorkTable, cycles
 from fes_mj.design import Design, Linkage, Rider
 from fes_mj.design_file import load_design
 from fes_mj.errors import AssemblyError
-from fes_mj.geometry import DYADS, clearances, grashof_margin, joint_ranges, require_assembly, transmission_angles
+from fes_mj.geometry import (
+    DYADS,
+    LEAST_CLEARANCE,
+    clearances,
+    grashof_margin,
+    joint_ranges,
+    require_assembly,
+    transmission_angles,
+)
 from fes_mj.kinematics import FULL_TURN
+from fes_mj.moments import load_moments
 from fes_mj.reference_tricycle import PAPER_TRICYCLE
 from tests.linkages import designs
 
@@ -97,3 +107,27 @@ def test_a_thigh_that_turns_right_round_is_refused() -> None:
     round_the_hip = Design("around", Linkage("trt", 0.05 + 0j, 0.3, 0.0), Rider(0.3, 0.3))
     with pytest.raises(AssemblyError, match=r"around: the thigh swings through 3[0-9][0-9] deg"):
         require_assembly(round_the_hip)
+
+
+def test_a_batch_turns_where_its_designs_do() -> None:
+    """Legs around the shortest and longest that reach the pedal of R1 and D2, those within micrometres included."""
+    random, table = np.random.default_rng(3), WorkTable.of(load_moments())
+    for name in ("trt", "r1", "d2"):
+        design = load_design(name)
+        reach = clearances(design)[-1].margin[0]
+        shorter = reach - np.concatenate([random.uniform(-0.01, 0.01, 40), LEAST_CLEARANCE + 1e-6 * np.arange(-3, 4)])
+        batch = replace(design, rider=replace(design.rider, thigh=design.rider.thigh - shorter[:, None]))
+        turns = [
+            _turns(replace(design, rider=replace(design.rider, thigh=float(thigh))))
+            for thigh in batch.rider.thigh[:, 0]
+        ]
+        assert cycles(batch, table).turns.tolist() == turns
+        assert 10 < sum(turns) < 40
+
+
+def _turns(design: Design) -> bool:
+    try:
+        require_assembly(design)
+    except AssemblyError:
+        return False
+    return True
