@@ -4,10 +4,11 @@ import csv
 import json
 import math
 import os
+import shutil
 import tempfile
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NoReturn
@@ -191,38 +192,123 @@ def make_folder(folder: Path, what: str) -> None:
     require_folder(folder, what)
 
 
-def require_writable(path: Path, what: str, suffix: str = "") -> None:
-    """Raise InputError unless a file can be put at `path` (and its name ends as it must)."""
+def require_writable(path: Path, what: str, suffix: str = "", inputs: Iterable[Path] = ()) -> None:
+    """Raise InputError unless a file that the user named can be put at `path` (and its name ends as it must).
+
+    A file that is there is replaced, but never one of `inputs`, under whatever name.
+    """
+    require_folder(path.parent, what)
+    try:
+        path.lstat()
+    except FileNotFoundError:
+        pass
+    except OSError as error:
+        raise InputError(f"{path}: cannot write {what}: {error.strerror}; give it another name") from None
+    except ValueError:  # a NUL in the name, or what the file system cannot spell
+        raise InputError(f"{path}: cannot write {what}: no file can have this name") from None
     if path.is_dir():
         raise InputError(f"{path}: cannot write {what}: this is a folder; name a file in it")
     if suffix and path.suffix.lower() != suffix:
         raise InputError(f"{path}: cannot write {what}: the name must end in {suffix}")
-    require_folder(path.parent, what)
+    if path.exists():
+        for file in inputs:
+            if file.exists() and path.samefile(file):
+                raise InputError(
+                    f"{path}: cannot write {what}: it would replace {file}, which this command reads; "
+                    "give the output another name or folder"
+                )
+
+
+def require_replaceable(path: Path, what: str, start: str | tuple[str, ...], inputs: Iterable[Path] = ()) -> None:
+    """As require_writable, for a file that the user did not name but that is written beside one or into a folder.
+
+    A file that is there is replaced only if it begins with `start` (one of them), as what fes_mj writes there does.
+    """
+    require_writable(path, what, inputs=inputs)
+    if path.exists() and not _beginning(path).startswith(start):
+        raise InputError(
+            f"{path}: cannot write {what}: a file that fes_mj did not write has this name; "
+            "move it, or give the output another name or folder"
+        )
+
+
+def _beginning(path: Path) -> str:
+    """The first characters of a file, "" for what cannot be read."""
+    try:
+        with path.open("rb") as file:
+            return file.read(1000).decode("utf-8", errors="replace")
+    except OSError:
+        return ""
 
 
 @contextmanager
-def replacing(path: Path) -> Iterator[Path]:
-    """Give a temporary path beside `path`; rename it to `path` on success, remove it on any failure."""
+def _named(path: Path) -> Iterator[None]:
+    """What the system refuses becomes an InputError that names the file."""
     try:
-        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.stem}-", suffix=path.suffix)
+        yield
+    except BrokenPipeError:  # a stream's, not a file's
+        raise
     except OSError as error:
-        raise InputError(f"{path}: cannot be written: {error.strerror}") from None
-    os.close(handle)
+        raise InputError(f"{path}: cannot be written: {error.strerror or error}") from None
+
+
+@contextmanager
+def _beside(path: Path) -> Iterator[Path]:
+    """An empty temporary file in the folder of `path`, with its suffix; gone afterwards."""
+    with _named(path):
+        handle, name = tempfile.mkstemp(dir=path.parent, prefix=".fes_mj-", suffix=path.suffix)
     temporary = Path(name)
     try:
-        yield temporary
+        os.close(handle)
         umask = os.umask(0)
         os.umask(umask)
         temporary.chmod(0o666 & ~umask)  # mkstemp's files are private; ours are ordinary
-        temporary.replace(path)
+        yield temporary
     finally:
         temporary.unlink(missing_ok=True)
 
 
+@contextmanager
+def replacing(path: Path) -> Iterator[Path]:
+    """Give a temporary path beside `path`; rename it to `path` on success, remove it on any failure.
+
+    Raises InputError for what the system refuses: a full disk, a folder that is gone or cannot be written to.
+    """
+    with _beside(path) as temporary, _named(path):
+        yield temporary
+        temporary.replace(path)
+
+
 def write_text(path: Path, text: str) -> None:
-    """Write a whole text file or nothing."""
+    """Write a whole text file or nothing. Raises InputError as replacing."""
     with replacing(path) as temporary:
-        temporary.write_text(text, encoding="utf-8")
+        temporary.write_bytes(text.encode())
+
+
+def write_files(contents: Mapping[Path, str | bytes]) -> None:
+    """Write files that belong together: all appear whole, or none does and what stood there still stands.
+
+    Raises InputError as replacing.
+    """
+    with ExitStack() as stack:
+        new = {path: stack.enter_context(_beside(path)) for path in contents}
+        old = {path: stack.enter_context(_beside(path)) for path in contents if path.exists()}
+        for path, content in contents.items():
+            with _named(path):
+                new[path].write_bytes(content.encode() if isinstance(content, str) else content)
+                if path in old:
+                    shutil.copy2(path, old[path])
+        try:
+            for path, temporary in new.items():
+                with _named(path):
+                    temporary.replace(path)
+        except BaseException:
+            for path in (path for path, temporary in new.items() if not temporary.exists()):  # these were renamed
+                if path in old:
+                    old[path].replace(path)
+                else:
+                    path.unlink()
+            raise
 
 
 def json_text(content: Mapping[str, Any]) -> str:

@@ -1,5 +1,7 @@
 """Reading, refusing and writing: one wording, naming file, key, value and what is allowed; files appear whole."""
 
+import errno
+import os
 from collections.abc import Callable
 from pathlib import Path
 
@@ -7,7 +9,19 @@ import pytest
 
 from fes_mj import files
 from fes_mj.errors import InputError
-from fes_mj.files import Section, csv_text, read_csv, read_json, read_text, read_toml
+from fes_mj.files import (
+    Section,
+    csv_text,
+    read_csv,
+    read_json,
+    read_text,
+    read_toml,
+    replacing,
+    require_replaceable,
+    require_writable,
+    write_files,
+    write_text,
+)
 
 
 def _section(tmp_path: Path, text: str) -> Section:
@@ -100,8 +114,6 @@ def test_damaged_json_is_refused(text: str, words: str, tmp_path: Path) -> None:
 
 
 def test_a_failed_write_leaves_the_old_file(tmp_path: Path) -> None:
-    from fes_mj.files import replacing
-
     target = tmp_path / "result.json"
     target.write_text("old")
 
@@ -113,3 +125,100 @@ def test_a_failed_write_leaves_the_old_file(tmp_path: Path) -> None:
     with pytest.raises(KeyboardInterrupt):
         interrupted()
     assert [path.read_text() for path in tmp_path.iterdir()] == ["old"]
+
+
+@pytest.fixture
+def measured(tmp_path: Path) -> Path:
+    path = tmp_path / "m.csv"
+    path.write_text("measured")
+    return path
+
+
+def test_an_output_never_replaces_an_input_under_any_name(measured: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = measured.parent
+    (folder / "symbolic.csv").symlink_to(measured)
+    (folder / "hard.csv").hardlink_to(measured)
+    monkeypatch.chdir(folder)
+    names = (measured, folder / "symbolic.csv", folder / "hard.csv", Path("m.csv"), Path(f"../{folder.name}/m.csv"))
+    for output in names:
+        for read in names:
+            with pytest.raises(InputError, match=r"would replace .*\.csv, which this command reads; give the output"):
+                require_writable(output, "the table", ".csv", [Path("not-there"), read])
+
+
+def test_a_named_file_is_replaced_unless_it_is_an_input(measured: Path) -> None:
+    require_writable(measured, "the table", ".csv", [measured.with_name("other.csv")])
+
+
+def test_a_file_that_nobody_named_is_replaced_only_if_it_is_ours(measured: Path) -> None:
+    with pytest.raises(InputError, match="did not write"):
+        require_replaceable(measured, "the table", "a,b")
+    measured.write_text("a,b\n1,2\n")
+    require_replaceable(measured, "the table", "a,b")
+    require_replaceable(measured, "the table", ("x", "a,b"))
+    with pytest.raises(InputError, match="would replace"):
+        require_replaceable(measured, "the table", "a,b", [measured])
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("n" * 300 + ".csv", "File name too long"),
+        ("nul\0.csv", "no file can have this name"),
+        ("none/a.csv", "does not exist"),
+        ("m.csv/a.csv", "is not a folder"),
+        (".", "this is a folder"),
+        ("a.txt", r"must end in \.csv"),
+    ],
+)
+def test_where_no_file_can_be(name: str, words: str, measured: Path) -> None:
+    with pytest.raises(InputError, match=words):
+        require_writable(measured.parent / name, "the table", ".csv")
+
+
+def test_files_that_belong_together_appear_together(measured: Path) -> None:
+    other = measured.with_name("a.json")
+    write_files({measured: "new\n", other: b"{}"})
+    assert (measured.read_bytes(), other.read_bytes()) == (b"new\n", b"{}")
+    assert {*measured.parent.iterdir()} == {measured, other}
+    plain = measured.with_name("plain")
+    plain.touch()
+    assert other.stat().st_mode == plain.stat().st_mode
+
+
+@pytest.mark.parametrize("failing", range(3))
+def test_of_files_that_belong_together_none_appears_alone(
+    failing: int, measured: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whichever cannot be put in its place, what stood there before stands there again, and nothing else."""
+    paths = [measured, measured.with_name("b.xml"), measured.with_name("c.json")]
+    (failed := paths[failing]).write_text("of somebody else")
+    before = {path: path.read_text() for path in measured.parent.iterdir()}
+    rename = Path.replace
+
+    def refuse(self: Path, target: Path) -> Path:
+        if target == failed:
+            raise PermissionError(errno.EPERM, os.strerror(errno.EPERM))
+        return rename(self, target)
+
+    monkeypatch.setattr(Path, "replace", refuse)
+    with pytest.raises(InputError, match=f"{failed.name}: cannot be written: Operation not permitted"):
+        write_files(dict.fromkeys(paths, "new"))
+    assert {path: path.read_text() for path in measured.parent.iterdir()} == before
+
+
+def test_a_full_disk_is_blamed_on_the_file(measured: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: object) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(Path, "write_bytes", full)
+    other = measured.with_name("b.xml")
+    for write in (lambda: write_files({other: "", measured: ""}), lambda: write_text(other, "")):
+        with pytest.raises(InputError, match=r"b\.xml: cannot be written: No space left on device"):
+            write()
+    assert [path.read_text() for path in measured.parent.iterdir()] == ["measured"]
+
+
+def test_a_folder_that_is_gone_is_said(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"a\.xml: cannot be written: No such file or directory"):
+        write_files({tmp_path / "gone" / "a.xml": ""})
