@@ -219,26 +219,20 @@ def require_writable(path: Path, what: str, suffix: str = "", inputs: Iterable[P
                 )
 
 
-def require_replaceable(path: Path, what: str, start: str | tuple[str, ...], inputs: Iterable[Path] = ()) -> None:
+def require_replaceable(path: Path, what: str, mark: str, inputs: Iterable[Path] = ()) -> None:
     """As require_writable, for a file that the user did not name but that is written beside one or into a folder.
 
-    A file that is there is replaced only if it begins with `start` (one of them), as what fes_mj writes there does.
+    A file that is there is replaced only if `mark` is in its first thousand bytes, as in all that fes_mj writes there.
     """
     require_writable(path, what, inputs=inputs)
-    if path.exists() and not _beginning(path).startswith(start):
-        raise InputError(
-            f"{path}: cannot write {what}: a file that fes_mj did not write has this name; "
-            "move it, or give the output another name or folder"
-        )
-
-
-def _beginning(path: Path) -> str:
-    """The first characters of a file, "" for what cannot be read."""
-    try:
-        with path.open("rb") as file:
-            return file.read(1000).decode("utf-8", errors="replace")
-    except OSError:
-        return ""
+    if path.exists():
+        with _named(path), path.open("rb") as file:
+            ours = mark.encode() in file.read(1000)
+        if not ours:
+            raise InputError(
+                f"{path}: cannot write {what}: a file that fes_mj did not write has this name; "
+                "move it, or give the output another name or folder"
+            )
 
 
 @contextmanager
