@@ -5,20 +5,29 @@ from contextlib import contextmanager
 from typing import TypeVar
 
 from rich.console import Console
+from rich.text import Text
+
+from fes_mj.text import printable
 
 Item = TypeVar("Item")
+GOOD, BAD = "bold green", "bold red"
 
-output = Console(emoji=False, highlight=False)
-errors = Console(emoji=False, stderr=True, highlight=False)
+output = Console(markup=False, emoji=False, highlight=False)
+errors = Console(markup=False, emoji=False, highlight=False, stderr=True)
 
 
 def say(text: str, style: str | None = None) -> None:
-    """Print a line as it is, however long, without reading markup in it."""
-    output.print(text, style=style, markup=False, soft_wrap=True)
+    """Print a line as it is, however long."""
+    output.print(printable(text), style=style, soft_wrap=True)
 
 
-def print_table(title: str, columns: Sequence[str], rows: Iterable[Sequence[str]]) -> None:
-    """Print a title and a table, first column left, the others right aligned; cells may hold rich's markup."""
+def conclude(ok: bool, result: str, more: str) -> None:
+    """Print what came out, in colour, and more about it."""
+    output.print(Text.assemble((result, GOOD if ok else BAD), printable(more)), soft_wrap=True)
+
+
+def print_table(title: str, columns: Sequence[str], rows: Iterable[Sequence[str | Text]]) -> None:
+    """Print a title and a table, first column left, the others right aligned."""
     from rich.box import SIMPLE_HEAD
     from rich.table import Table
 
@@ -27,23 +36,36 @@ def print_table(title: str, columns: Sequence[str], rows: Iterable[Sequence[str]
     for number, column in enumerate(columns):
         table.add_column(column, justify="right" if number else "left")
     for row in rows:
-        table.add_row(*row)
+        table.add_row(*(printable(cell) if isinstance(cell, str) else cell for cell in row))
     output.print(table)
 
 
 @contextmanager
 def progress_bar(what: str, total: int, silent: bool = False, done: int = 0) -> Iterator[Callable[[int], None]]:
     """A bar on standard error with rate and time left; call what it gives with the number of steps just made."""
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, ProgressColumn, Task, TimeRemainingColumn
-    from rich.text import Text
+    from rich.progress import (
+        BarColumn,
+        MofNCompleteColumn,
+        Progress,
+        ProgressColumn,
+        Task,
+        TextColumn,
+        TimeRemainingColumn,
+    )
 
     class Rate(ProgressColumn):
         def render(self, task: Task) -> Text:
             return Text(f"{task.speed:,.3g}/s" if task.speed else "")
 
-    columns = ("{task.description}", BarColumn(), MofNCompleteColumn(), Rate(), TimeRemainingColumn())
+    columns = (
+        TextColumn("{task.description}", markup=False),
+        BarColumn(),
+        MofNCompleteColumn(),
+        Rate(),
+        TimeRemainingColumn(),
+    )
     with Progress(*columns, console=errors, transient=True, disable=silent) as bars:
-        task = bars.add_task(what, total=total, completed=done)
+        task = bars.add_task(printable(what), total=total, completed=done)
         yield lambda steps: bars.update(task, advance=steps)
 
 
@@ -60,6 +82,6 @@ def number(value: float, unit: str = "") -> str:
     return f"{value:.2g} {unit}".rstrip()
 
 
-def verdict(ok: bool) -> str:
+def verdict(ok: bool) -> Text:
     """Whether a check holds, in colour."""
-    return "[green]ok[/]" if ok else "[bold red]FAILED[/]"
+    return Text("ok", "green") if ok else Text("FAILED", BAD)

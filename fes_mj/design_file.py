@@ -10,6 +10,7 @@ from fes_mj.design import ARCHITECTURES, BRANCHES, Design, Linkage, Rider
 from fes_mj.errors import InputError
 from fes_mj.files import Section, is_number, read_toml
 from fes_mj.segments import DE_LEVA
+from fes_mj.text import printable
 from fes_mj.variables import LONGEST, VARIABLES, Variable
 
 DESIGNS = ("trt", "r1", "r2", "d1", "d2")
@@ -40,7 +41,9 @@ def _read(path: Path) -> Design:
     words = ("kind",) if kind == "trt" else ("kind", "branch")
     numbers = _values(linkage, kind, *words)
     branch = linkage.choice("branch", BRANCHES, Linkage.branch)
-    return Design(path.stem, Linkage(kind, **numbers, branch=branch), Rider(sex=sex, **_values(rider, kind, "sex")))
+    return Design(
+        printable(path.stem), Linkage(kind, **numbers, branch=branch), Rider(sex=sex, **_values(rider, kind, "sex"))
+    )
 
 
 def _values(section: Section, kind: str, *words: str) -> dict[str, Any]:

@@ -11,6 +11,7 @@ from fes_mj.errors import InputError
 from fes_mj.files import read_csv
 from fes_mj.joints import PerJoint
 from fes_mj.reference_tricycle import PAPER_TRICYCLE, ReferenceTricycle
+from fes_mj.text import printable
 from fes_mj.torque_velocity import TorqueVelocity
 
 GROUPS = ("p1p2", "p1p3")
@@ -73,7 +74,7 @@ def _read(path: Path) -> JointMoments:
     repeated = np.flatnonzero(np.diff(data[0]) == 0)
     if repeated.size:
         raise InputError(f"{path}: crank_angle_deg {data[0][repeated[0]]:g} is given twice; give each angle once")
-    return JointMoments(path.stem, np.radians(data[0]), data[1], data[2])
+    return JointMoments(printable(path.stem), np.radians(data[0]), data[1], data[2])
 
 
 def _refuse_unless(

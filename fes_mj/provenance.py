@@ -2,11 +2,14 @@
 
 import hashlib
 import platform
+import shlex
 import sys
 from collections.abc import Iterable
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
+
+from fes_mj.text import printable
 
 
 def provenance(inputs: Iterable[Path] = (), packages: Iterable[str] = ()) -> dict[str, Any]:
@@ -15,7 +18,7 @@ def provenance(inputs: Iterable[Path] = (), packages: Iterable[str] = ()) -> dic
         "fes_mj": version("fes-mj"),
         "python": platform.python_version(),
         **{package: version(package) for package in ("mujoco", "numpy", "scipy", *packages)},
-        "command": " ".join([_program(Path(sys.argv[0])), *sys.argv[1:]]),
+        "command": printable(shlex.join([_program(Path(sys.argv[0])), *sys.argv[1:]])),
         "inputs": {_name(path): hashlib.sha256(path.read_bytes()).hexdigest() for path in inputs},
     }
 
@@ -28,4 +31,4 @@ def _program(path: Path) -> str:
 def _name(path: Path) -> str:
     """The file's place among the shipped data, or its bare name: two designs differ only by their folder."""
     data = Path(__file__).parent / "data"
-    return str(path.relative_to(data)) if path.is_relative_to(data) else path.name
+    return str(path.relative_to(data)) if path.is_relative_to(data) else printable(path.name)

@@ -37,6 +37,11 @@ STYLE: dict[Any, Any] = {
 }
 
 
+def literal(text: str) -> str:
+    """The text as matplotlib draws it literally, whatever dollar signs it holds."""
+    return text.replace("$", r"\$")
+
+
 def rgb(colour: str) -> tuple[float, float, float]:
     """Red, green and blue of "#rrggbb", each 0 to 1."""
     red, green, blue = (round(int(colour[i : i + 2], 16) / 255, 3) for i in (1, 3, 5))

@@ -3,7 +3,9 @@
 import os
 import sys
 
-INTERRUPTED = 130
+from fes_mj.cli.process import interruption_code, prepare
+from fes_mj.errors import InputError
+
 INTERRUPTION = "interrupted; nothing was left half-written"
 PURPOSE = "Does a pedalling linkage for FES cycling deliver its power when legs have mass and loops must close?"
 # The help lines stand here so that `--help` need not import the commands, nor anything else.
@@ -22,22 +24,34 @@ COMMANDS = {
 
 def main() -> None:
     """Entry point of the fes_mj command."""
-    arguments = sys.argv[1:]
+    try:
+        prepare()
+        sys.exit(_run(sys.argv[1:]))
+    except InputError as error:
+        print(f"fes_mj: {error}", file=sys.stderr)
+        sys.exit(2)
+    except KeyboardInterrupt as error:
+        print(f"fes_mj: {INTERRUPTION}", file=sys.stderr)
+        sys.exit(interruption_code(error))
+
+
+def _run(arguments: list[str]) -> int:
     if arguments in ([], ["--help"], ["-h"]):
-        _answer(_help())
+        text = _help()
     elif arguments == ["--version"]:
         from importlib.metadata import version
 
-        _answer(version("fes-mj"))
-    try:
+        text = version("fes-mj")
+    else:
         # keeps `import mujoco` from loading OpenGL, which may be absent; rendering puts the user's choice back
         os.environ["FES_MJ_GL"] = os.environ.get("MUJOCO_GL", "")
         os.environ["MUJOCO_GL"] = "disable"
         from fes_mj.cli.app import run
-    except KeyboardInterrupt:
-        print(f"fes_mj: {INTERRUPTION}", file=sys.stderr)
-        sys.exit(INTERRUPTED)
-    sys.exit(run())
+
+        return run()
+    print(text)
+    sys.stdout.flush()
+    return 0
 
 
 def _help() -> str:
@@ -48,12 +62,3 @@ def _help() -> str:
     ]
     lines = [f"  {name:12}{text}" for name, text in rows]
     return "\n".join(["Usage: fes_mj COMMAND [...]", "", PURPOSE, "", *lines, "", "fes_mj COMMAND --help says more."])
-
-
-def _answer(text: str) -> None:
-    try:
-        print(text)
-        sys.stdout.flush()
-    except OSError:  # nobody reads, or nowhere to write
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-    sys.exit(0)

@@ -1,14 +1,15 @@
 """Parsing a command line, running the command, and the exit code that says how it went."""
 
-import os
 import sys
 from collections.abc import Sequence
 
 from cyclopts import App, CycloptsError
 
-from fes_mj.cli import COMMANDS, INTERRUPTED, INTERRUPTION, PURPOSE
+from fes_mj.cli import COMMANDS, INTERRUPTION, PURPOSE
+from fes_mj.cli.process import interruption_code
 from fes_mj.console import errors
 from fes_mj.errors import InputError, MissingPartError, UnstableError
+from fes_mj.text import printable
 
 AGREES, DISAGREES, BAD_INPUT, MISSING_PART = 0, 1, 2, 3
 LONGEST_MESSAGE = 1000  # characters
@@ -23,6 +24,7 @@ def run(arguments: Sequence[str] | None = None) -> int:
     """Run one command line and return its exit code; every expected failure becomes one message on standard error."""
     try:
         code = app(arguments, exit_on_error=False, print_error=False, result_action="return_value")
+        sys.stdout.flush()
         return code if isinstance(code, int) else AGREES
     except (CycloptsError, InputError) as error:
         return _fail(error, BAD_INPUT)
@@ -30,25 +32,22 @@ def run(arguments: Sequence[str] | None = None) -> int:
         return _fail(error, MISSING_PART)
     except UnstableError as error:
         return _fail(error, DISAGREES)
-    except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # the reader left; nothing more to say
-        return DISAGREES
     except OSError as error:
-        return _fail(f"{error.filename or 'output'}: {error.strerror}", BAD_INPUT)
-    except KeyboardInterrupt:
-        return _fail(INTERRUPTION, INTERRUPTED)
+        return _fail(f"{error.filename or 'a file'}: {error.strerror or error}", BAD_INPUT)
+    except KeyboardInterrupt as error:
+        return _fail(INTERRUPTION, interruption_code(error))
     except ImportError as error:
         cause: BaseException | None = error
         while cause and not isinstance(cause, KeyboardInterrupt):
             cause = cause.__cause__
         if cause is None:
             raise
-        return _fail(INTERRUPTION, INTERRUPTED)  # it came while a compiled module was being loaded
+        return _fail(INTERRUPTION, interruption_code(cause))  # it came while a compiled module was being loaded
 
 
 def _fail(message: object, code: int) -> int:
-    text = str(message)
+    text = printable(str(message))
     if len(text) > LONGEST_MESSAGE:  # quoted input can be as long as the file
         text = f"{text[: LONGEST_MESSAGE // 2]} ... {text[-LONGEST_MESSAGE // 2 :]}"
-    errors.print(f"fes_mj: {text}", markup=False, highlight=False, soft_wrap=True)
+    errors.print(f"fes_mj: {text}", soft_wrap=True)
     return code

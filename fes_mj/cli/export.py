@@ -8,7 +8,8 @@ from cyclopts import Parameter
 from fes_mj.cli.options import LoadOptions
 from fes_mj.console import say
 from fes_mj.errors import InputError
-from fes_mj.files import require_writable, write_text
+from fes_mj.files import require_replaceable, require_writable, write_files
+from fes_mj.text import printable
 
 _DEFAULTS = LoadOptions()
 _SCENE = "scene.xml"
@@ -39,17 +40,17 @@ def export(
     scene
         Also write scene.xml beside the model: floor, light and camera.
     """
-    loaded = options.load(design)
-    require_writable(out, "the model", ".xml")
-    table = out.with_suffix(".csv")
-    require_writable(table, "the table")
-    if scene:
-        if out.name == _SCENE:
-            raise InputError(f"{out}: --scene writes {_SCENE} beside the model; give the model another name")
-        require_writable(out.with_name(_SCENE), "the scene")
-    from fes_mj.simulation.export import mjcf_text, scene_text, sidecar_text, variant_options
+    loaded, inputs = options.load(design), options.inputs(design)
+    require_writable(out, "the model", ".xml", inputs)
+    from fes_mj.simulation.export import MARKS, mjcf_text, scene_text, sidecar_text, variant_options
     from fes_mj.simulation.mjcf import build_mjcf
 
+    table = out.with_suffix(".csv")
+    require_replaceable(table, "the table", MARKS["table"], inputs)
+    if scene:
+        if out.name.lower() == _SCENE or printable(out.name) != out.name:
+            raise InputError(f"{out}: --scene writes {_SCENE}, which names the model; give the model another name")
+        require_replaceable(out.with_name(_SCENE), "the scene", MARKS["scene"], inputs)
     changes = variant_options(variant or ())
     texts = {
         out: mjcf_text(build_mjcf(loaded.design, cadence=loaded.cadence, **changes)),
@@ -57,8 +58,7 @@ def export(
     }
     if scene:
         texts[out.with_name(_SCENE)] = scene_text(loaded.design, out.name)
-    for path, text in texts.items():
-        write_text(path, text)
+    write_files(texts)
     for path, what in zip(texts, ("model", "table", "scene"), strict=False):
         say(f"{what}: {path}")
     return 0

@@ -94,6 +94,10 @@ class LoadOptions(MomentsOptions):
             moments = replace(moments, torque_velocity=load_torque_velocity(self.torque_velocity))
         return Loaded(loaded, moments, crank_speed(self.cadence, loaded))
 
+    def inputs(self, *designs: str) -> list[Path]:
+        """The files that a command with these options and designs reads, which none of its outputs may replace."""
+        return [Path(source) for source in (*designs, self.moments) if source]
+
 
 @Parameter(name="*")
 @dataclass

@@ -10,13 +10,15 @@ import numpy as np
 
 from fes_mj.cli.options import RunOptions
 from fes_mj.cli.static import force_rows, heading, print_notes, rows, span, with_error
-from fes_mj.console import number, output, print_table, say, verdict
+from fes_mj.console import conclude, number, print_table, say, verdict
 from fes_mj.errors import InputError
-from fes_mj.files import json_text, require_folder, require_writable, write_text
+from fes_mj.files import json_text, require_folder, require_replaceable, require_writable, write_files
 from fes_mj.time_step import LONGEST_TIMESTEP
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+
+    from rich.text import Text
 
     from fes_mj.checks import Check
     from fes_mj.crosscheck import Case
@@ -54,13 +56,16 @@ def simulate(
     legs
         One leg, or two half a turn apart on the same crank.
     """
-    loaded = options.load(design)
-    _check(render, out, timestep, turns)
+    loaded, inputs = options.load(design), options.inputs(design)
+    _check(timestep, turns)
+    if render:
+        require_writable(render, "the video", ".mp4", inputs)
     from fes_mj.crosscheck import Case
 
     case = Case(*loaded, timestep, turns, legs)
-    if out:
-        _write(case, out)
+    results = _results(case, out, inputs) if out else []
+    if results:
+        _write(case, *results)
     if options.json:
         sys.stdout.write(json_text(case.summary()))
     elif not options.quiet:
@@ -74,19 +79,15 @@ def simulate(
     return 0 if case.agrees else 1
 
 
-def _check(render: Path | None, out: Path | None, timestep: float | None, turns: int) -> None:
+def _check(timestep: float | None, turns: int) -> None:
     """Refuse unusable options before anything runs."""
-    if render:
-        require_writable(render, "the video", ".mp4")
-    if out:
-        require_folder(out, "the results")
     if timestep is not None and not 0 < timestep <= LONGEST_TIMESTEP:
         raise InputError(f"--timestep is {timestep:g}; it must be above 0 and at most {LONGEST_TIMESTEP:g} s")
     if not 1 <= turns <= MOST_TURNS:
         raise InputError(f"--turns is {turns}; it must be from 1 to {MOST_TURNS}")
 
 
-def check_rows(checks: Sequence[Check]) -> list[tuple[str, str, str, str]]:
+def check_rows(checks: Sequence[Check]) -> list[tuple[str, str, str, Text]]:
     """Name, value, limit and verdict of checks, as text."""
     return [
         (each.name, number(each.value, each.unit), number(each.limit, each.unit), verdict(each.ok)) for each in checks
@@ -109,19 +110,27 @@ def _print(case: Case, verbose: bool) -> None:
         print_table("Constraint forces", ("loop", "mean N", "largest N"), force_rows(run.loop_force))
     print_notes(case.static)
     if case.agrees:
-        output.print(f"[bold green]Dynamic and static agree[/]: mean power differs by {case.difference_text}.")
+        conclude(True, "Dynamic and static agree", f": mean power differs by {case.difference_text}.")
     else:
         failed = ", ".join(check.name for check in case.checks if not check.ok)
-        output.print(f"[bold red]Dynamic and static do not agree[/]: {failed}; `fes_mj explain CHECK` says more.")
+        conclude(False, "Dynamic and static do not agree", f": {failed}; `fes_mj explain CHECK` says more.")
 
 
-def _write(case: Case, out: Path) -> None:
-    """Result, cycle and model, each whole or not at all."""
+def _results(case: Case, folder: Path, inputs: Sequence[Path]) -> list[Path]:
+    """Where result, cycle and model go. Raises InputError, before anything runs, if files of others are there."""
+    from fes_mj.simulation.export import MARKS
+
+    require_folder(folder, "the results")
+    marks = {"json": '"group": ', "csv": ",inverse_dynamics_power_W,", "xml": MARKS["model"]}
+    paths = {folder / f"{case.design.name}-{case.moments.name}.{suffix}": mark for suffix, mark in marks.items()}
+    for path, mark in paths.items():
+        require_replaceable(path, "the results", mark, inputs)
+    return [*paths]
+
+
+def _write(case: Case, result: Path, cycle: Path, model: Path) -> None:
     from fes_mj.simulation.export import mjcf_text
     from fes_mj.simulation.mjcf import build_mjcf
 
-    run, stem = case.simulation, f"{case.design.name}-{case.moments.name}"
-    model = build_mjcf(case.design, cadence=case.cadence, timestep=run.timestep, legs=case.legs)
-    write_text(out / f"{stem}.json", json_text(case.summary()))
-    write_text(out / f"{stem}.csv", case.cycle_csv())
-    write_text(out / f"{stem}.xml", mjcf_text(model))
+    spec = build_mjcf(case.design, cadence=case.cadence, timestep=case.simulation.timestep, legs=case.legs)
+    write_files({result: json_text(case.summary()), cycle: case.cycle_csv(), model: mjcf_text(spec)})

@@ -13,7 +13,7 @@ from cyclopts import Parameter
 from fes_mj.checks import Check, definitions
 from fes_mj.cli.options import RunOptions
 from fes_mj.cli.simulate import check_rows
-from fes_mj.console import output, print_table, track
+from fes_mj.console import conclude, print_table, say, track
 from fes_mj.design_file import DESIGNS
 from fes_mj.errors import InputError
 from fes_mj.extrapolation import require_motion
@@ -56,16 +56,12 @@ def validate(
         A video of `fes_mj simulate --render` to put into the report (.mp4).
     """
     cases = list(_cases(designs or DESIGNS, options, quick))
-    _check_files(report, junit, video)
+    _check_files(report, junit, video, options.inputs(*designs))
     checks = _run_checks(cases, quick, options.silent)
     detections = _inject(designs[0] if designs else FAULTY_DESIGN, options) if faults else ()
     broken = {each.subject for each in checks if each.name == "stability" and not each.ok}
     measured = [case for case in cases if case.name not in broken]
     ok = all(each.ok for each in checks) and all(each.caught for each in detections)
-    if options.json:
-        sys.stdout.write(json_text(_summary(ok, checks, detections, measured)))
-    elif not options.quiet:
-        _print(ok, checks, detections, measured, options.verbose)
     if junit:
         from fes_mj.verification.junit import junit_xml
 
@@ -74,6 +70,10 @@ def validate(
         from fes_mj.verification.report import report_html
 
         write_text(report, report_html(checks, detections, measured, video))
+    if options.json:
+        sys.stdout.write(json_text(_summary(ok, checks, detections, measured)))
+    elif not options.quiet:
+        _print(ok, checks, detections, measured, options.verbose)
     return 0 if ok else 1
 
 
@@ -92,15 +92,15 @@ def _cases(designs: Sequence[str], options: RunOptions, quick: bool) -> Iterator
             yield case
 
 
-def _check_files(report: Path | None, junit: Path | None, video: Path | None) -> None:
+def _check_files(report: Path | None, junit: Path | None, video: Path | None, inputs: list[Path]) -> None:
     """Refuse unusable files, and a missing package, before anything runs."""
     if report:
-        require_writable(report, "the report", ".html")
+        require_writable(report, "the report", ".html", inputs)
         from fes_mj.viewing.pages import require_page_packages
 
         require_page_packages()
     if junit:
-        require_writable(junit, "the JUnit file", ".xml")
+        require_writable(junit, "the JUnit file", ".xml", inputs)
     if video and not report:
         raise InputError("--video puts a video into the report; name it with --report OUT.html")
     if video and not (video.is_file() and video.suffix.lower() == ".mp4"):
@@ -154,12 +154,12 @@ def _print(
     missed = [each.fault.name for each in detections if not each.caught]
     if ok:
         also = f", all {len(detections)} faults are caught" if detections else ""
-        output.print(f"[bold green]All {len(checks)} checks hold[/]{also}.")
+        conclude(True, f"All {len(checks)} checks hold", f"{also}.")
     if failed:
-        output.print(f"[bold red]{len(failed)} of {len(checks)} checks failed[/]: {', '.join(failed)}")
-        output.print("`fes_mj explain CHECK` says what usually breaks one.")
+        conclude(False, f"{len(failed)} of {len(checks)} checks failed", f": {', '.join(failed)}")
+        say("`fes_mj explain CHECK` says what usually breaks one.")
     if missed:
-        output.print(f"[bold red]{len(missed)} faults went unnoticed[/]: {', '.join(missed)}")
+        conclude(False, f"{len(missed)} faults went unnoticed", f": {', '.join(missed)}")
 
 
 def _print_runs(cases: list[VerificationCase]) -> None:
@@ -203,7 +203,7 @@ def _print_faults(detections: Sequence[Detection]) -> None:
     rows = [
         (each.fault.name, each.first.name, f"{each.first.factor:.2g}", str(len(each.failed)))
         if each.first
-        else (each.fault.name, "[bold red]nobody[/]", "", "0")
+        else (each.fault.name, "nobody", "", "0")
         for each in detections
     ]
     print_table("Injected faults", ("fault", "first caught by", "times its limit", "checks that caught it"), rows)

@@ -29,7 +29,7 @@ def junit_xml(checks: Sequence[Check], detections: Sequence[Detection] = ()) -> 
             else:
                 ElementTree.SubElement(case, "system-out").text = f"caught by {detection.first.name}"
     ElementTree.indent(root)
-    return ElementTree.tostring(root, encoding="unicode", xml_declaration=True) + "\n"
+    return str(ElementTree.tostring(root, encoding="utf-8", xml_declaration=True), "utf-8") + "\n"
 
 
 def _suite(root: ElementTree.Element, name: str, tests: int, failures: int) -> ElementTree.Element:

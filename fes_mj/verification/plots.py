@@ -6,7 +6,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
-from fes_mj.style import STYLE
+from fes_mj.style import STYLE, literal
 from fes_mj.verification.case import VerificationCase
 from fes_mj.verification.problems import Chain
 from fes_mj.verification.refinement import Refinement
@@ -21,7 +21,7 @@ def power_curve(case: VerificationCase) -> str:
     """Simulated crank power over the turn beside its massive and its quasi-static reference."""
     figure, axes = _axes("", "")
     plot_power(axes, case)
-    axes.set_title(case.name, loc="left", fontsize=12)
+    axes.set_title(literal(case.name), loc="left", fontsize=12)
     return _svg(figure, axes)
 
 
@@ -41,7 +41,7 @@ def refinement_curve(name: str, refinement: Refinement) -> str:
     axes.set_xscale("log", base=2)
     axes.set_xticks(timestep, [f"{each:.3f}" for each in timestep])
     axes.set_yscale("log")
-    axes.set_title(name, loc="left", fontsize=12)
+    axes.set_title(literal(name), loc="left", fontsize=12)
     return _svg(figure, axes)
 
 

@@ -13,7 +13,14 @@ from fes_mj.errors import MissingPartError
 # In the order of speed; each is a module of mujoco.
 _BACKENDS = {"linux": ("egl", "osmesa"), "darwin": ("cgl",)}.get(sys.platform, ("glfw",))
 _WHEEL = "lavavu-osmesa"
-_PROBE = "import mujoco; context = mujoco.GLContext(16, 16); context.make_current(); context.free()"
+# A whole picture: without a screen GLFW makes no context, but fails only when something is drawn.
+_PROBE = """
+import mujoco
+model = mujoco.MjModel.from_xml_string("<mujoco/>")
+with mujoco.Renderer(model, 16, 16) as renderer:
+    renderer.update_scene(mujoco.MjData(model))
+    renderer.render()
+"""
 _MESSAGE = (
     "no OpenGL for rendering: neither EGL nor OSMesa works here; install one of them: "
     f"`pip install --no-deps {_WHEEL}`, `apt-get install libosmesa6`, or `apt-get install libegl1 libopengl0 "
@@ -40,7 +47,7 @@ def use_offscreen_gl() -> None:
 
 
 def _works(backend: str) -> bool:
-    """Whether a context can be made; tried in a process of its own, since a failed try cannot be undone."""
+    """Whether a picture can be drawn; tried in a process of its own, since a failed try cannot be undone."""
     environment = os.environ | {"MUJOCO_GL": backend}
     return subprocess.run([sys.executable, "-c", _PROBE], env=environment, capture_output=True).returncode == 0
 

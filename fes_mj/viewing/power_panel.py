@@ -10,7 +10,7 @@ from PIL import Image, ImageDraw
 
 from fes_mj.arrays import Picture
 from fes_mj.crosscheck import Case
-from fes_mj.style import BAD, COLOURS, FAINT, GOOD, INK, STYLE
+from fes_mj.style import BAD, COLOURS, FAINT, GOOD, INK, STYLE, literal
 from fes_mj.units import RPM
 from fes_mj.viewing.charts import plot_power
 
@@ -57,9 +57,12 @@ def _write_facts(figure: Any, case: Case) -> None:
     """Title above and the numbers below the curves."""
     run, static = case.simulation, case.static
     design, rpm = run.design, run.cadence / RPM
-    figure.text(0.05, 0.955, f"{design.name.upper()}: {design.linkage.architecture.title}", size=13, weight="bold")
+    figure.text(
+        0.05, 0.955, literal(f"{design.name.upper()}: {design.linkage.architecture.title}"), size=13, weight="bold"
+    )
     legs = "one leg" if len(run.legs) == 1 else "two legs"
-    figure.text(0.05, 0.925, f"joint moments {run.moments.name.upper()}, {rpm:.1f} rpm, {legs}", size=11, color=FAINT)
+    moments = literal(f"joint moments {run.moments.name.upper()}, {rpm:.1f} rpm, {legs}")
+    figure.text(0.05, 0.925, moments, size=11, color=FAINT)
     facts = (
         ("mean power, dynamic", f"{run.power_mean:.3f} W a leg", COLOURS["mujoco"]),
         ("mean power, quasi-static", f"{static.power_mean:.3f} W a leg", COLOURS["quasi-static"]),

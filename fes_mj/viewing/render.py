@@ -115,10 +115,11 @@ class _Labels:
 
     def _targets(self, data: mujoco.MjData) -> dict[str, FloatArray]:
         """Where each name points, m: a body's centre of mass, or the pedal."""
-        targets = {"pedal": data.site(f"{self._prefix}shank_pedal").xpos}
-        for body in self._spots.keys() - {"pedal"}:
-            targets[body] = data.body(body if body == "crank" else self._prefix + body).xipos
-        return targets
+        bodies = {body: body if body == "crank" else self._prefix + body for body in self._spots if body != "pedal"}
+        return {
+            "pedal": data.site(f"{self._prefix}shank_pedal").xpos,
+            **{body: data.body(name).xipos for body, name in bodies.items()},
+        }
 
     def draw(self, picture: Picture, data: mujoco.MjData, eyes: Any) -> Picture:
         """The picture with the names written on it; eyes: the scene's two cameras, between which it was taken."""

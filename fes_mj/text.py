@@ -1,0 +1,9 @@
+"""Text from outside, such as the name of a file, made fit to be shown."""
+
+
+def printable(text: str) -> str:
+    r"""The text with what has no picture of its own (control, direction, undecodable bytes) as escapes such as \x1b.
+
+    The result can be printed, drawn, encoded as UTF-8 and stand in XML.
+    """
+    return "".join(each if each.isprintable() else each.encode("unicode_escape").decode() for each in text)
