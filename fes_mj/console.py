@@ -64,7 +64,7 @@ def progress_bar(what: str, total: int, silent: bool = False, done: int = 0) -> 
         Rate(),
         TimeRemainingColumn(),
     )
-    with Progress(*columns, console=errors, transient=True, disable=silent) as bars:
+    with Progress(*columns, console=errors, transient=True, disable=silent or not errors.is_terminal) as bars:
         task = bars.add_task(printable(what), total=total, completed=done)
         yield lambda steps: bars.update(task, advance=steps)
 

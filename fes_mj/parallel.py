@@ -1,5 +1,12 @@
 """Independent tasks on this machine's cores (joblib, loky) or on a Dask cluster, through one function."""
 
+import multiprocessing
+import os
+import signal
+import sys
+import threading
+import time
+import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, ExitStack
 from typing import Any, NamedTuple, TypeVar
@@ -35,6 +42,8 @@ def run_tasks(
         yield from ((index, function(task)) for index, task in enumerate(tasks))
         return
     joblib = require_extra("optimize", "joblib")
+    # after an interruption joblib counts the tasks it has lost
+    warnings.filterwarnings("ignore", r"\d+ tasks have been successfully executed", UserWarning)
     with _backend(joblib, workers):
         parallel = joblib.Parallel(return_as="generator_unordered", batch_size=1)
         try:
@@ -51,9 +60,27 @@ def _numbered(function: Callable[[Task], Outcome], index: int, task: Task) -> tu
     return index, function(task)
 
 
+def _follow(parent: int) -> None:
+    """In a worker: leave Ctrl-C to the parent, and end when the parent is gone, even if it was killed."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+    def watch() -> None:
+        if sys.platform == "win32":  # where a process keeps the number of a parent that is gone
+            if process := multiprocessing.parent_process():
+                process.join()
+        else:
+            while os.getppid() == parent:
+                time.sleep(0.5)
+        os._exit(1)
+
+    threading.Thread(target=watch, daemon=True).start()
+
+
 def _backend(joblib: Any, workers: Workers) -> AbstractContextManager[Any]:
     if not workers.cluster:
-        here: AbstractContextManager[Any] = joblib.parallel_config("loky", n_jobs=workers.jobs, inner_max_num_threads=1)
+        here: AbstractContextManager[Any] = joblib.parallel_config(
+            "loky", n_jobs=workers.jobs, inner_max_num_threads=1, initializer=_follow, initargs=(os.getpid(),)
+        )
         return here
     distributed = require_extra("cluster", "distributed")
     try:

@@ -31,6 +31,7 @@ def reproduce(
     make_folder(out, "the results")
     from fes_mj.paper import reproduce as paper
 
+    paper.require_ours(out)
     with progress_bar("reproducing the paper", paper.steps(), quiet) as advance:
         written = paper.reproduce(out, lambda: advance(1), svg)
     if not quiet:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import io
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
-from fes_mj.files import json_text, replacing, write_text
+from fes_mj.errors import InputError
+from fes_mj.files import json_text, require_replaceable, write_files
 from fes_mj.paper import gains, metrics, readings, recovery, tables
 from fes_mj.paper.evidence import Evidence, load_evidence
 from fes_mj.paper.printed import DATA
@@ -22,6 +24,7 @@ if TYPE_CHECKING:
 
 DPI = 150  # of the PNG; the SVG is for print
 
+RECORD = "reproduction.json"
 Done: TypeAlias = Callable[[], None]
 
 
@@ -35,7 +38,7 @@ def steps() -> int:
 def reproduce(folder: Path, done: Done, svg: bool = False) -> list[Path]:
     """Write pages, figures and reproduction.json into an existing folder; `done` is called steps() times.
 
-    svg: figures as SVG beside the PNG. Every file appears whole or not at all; the same results are the same bytes.
+    svg: figures as SVG beside the PNG. All files appear or none; the same results are the same bytes.
     Returns the files written.
     """
     from fes_mj.paper.figures import FIGURES
@@ -44,10 +47,9 @@ def reproduce(folder: Path, done: Done, svg: bool = False) -> list[Path]:
     recovered = reconstruct(evidence)
     runs = run_all(done)
     pages = _pages(evidence, recovered, runs, done)
-    written = [_write_page(folder / name, *page) for name, page in pages.items()]
-    (folder / "figures").mkdir(exist_ok=True)
+    contents: dict[Path, str | bytes] = {folder / name: _page(*page) for name, page in pages.items()}
     for name, draw in FIGURES.items():
-        written += _write_figure(folder / "figures" / name, partial(draw, runs, recovered.posteriors), svg)
+        contents |= _figure(folder / "figures" / name, partial(draw, runs, recovered.posteriors), svg)
         done()
     record = {"provenance": provenance(inputs(), ["matplotlib"]), "hyperparameters": recovered.hyperparameters.__dict__}
     record["timestep_s"] = {" ".join(map(str, run)): case.simulation.timestep for run, case in runs.dynamic.items()}
@@ -55,8 +57,10 @@ def reproduce(folder: Path, done: Done, svg: bool = False) -> list[Path]:
         name.removesuffix(".md"): {table.title: table.records() for table in contents}
         for name, (_, contents) in pages.items()
     }
-    write_text(folder / "reproduction.json", json_text(record))
-    return [*written, folder / "reproduction.json"]
+    contents[folder / RECORD] = json_text(record)
+    (folder / "figures").mkdir(exist_ok=True)
+    write_files(contents)
+    return [*contents]
 
 
 def _pages(
@@ -104,26 +108,32 @@ def _pages(
     }
 
 
+def require_ours(folder: Path) -> None:
+    """Raise InputError unless a folder holds an earlier reproduction, which is replaced, or no file at all."""
+    if not (folder / RECORD).exists() and any(path.is_file() for path in folder.rglob("*")):
+        raise InputError(f"{folder}: this folder is not empty and holds no {RECORD}; name a new one")
+    require_replaceable(folder / RECORD, "the results", '{\n  "provenance": {\n    "fes_mj": ')
+
+
 def inputs() -> list[Path]:
     """The data files that the results depend on."""
     shared = [DATA / f"{name}.toml" for name in ("paper", "evidence", "torque_velocity")]
     return [*shared, *sorted((DATA / "designs").glob("*/*.toml")), *sorted((DATA / "moments").iterdir())]
 
 
-def _write_page(path: Path, title: str, contents: list[Table]) -> Path:
+def _page(title: str, contents: list[Table]) -> str:
     origin = "Written by `fes_mj reproduce`; versions and inputs: reproduction.json. Errors are one standard deviation."
-    write_text(path, "\n".join([f"# {title}\n", f"{origin}\n", *(table.markdown() for table in contents)]))
-    return path
+    return "\n".join([f"# {title}\n", f"{origin}\n", *(table.markdown() for table in contents)])
 
 
-def _write_figure(stem: Path, draw: Callable[[], Figure], svg: bool) -> list[Path]:
+def _figure(stem: Path, draw: Callable[[], Figure], svg: bool) -> dict[Path, bytes]:
     import matplotlib
 
-    paths = [stem.with_suffix(suffix) for suffix in (".png", *([".svg"] if svg else []))]
+    pictures = {}
     with matplotlib.rc_context(STYLE):
         figure = draw()
-        for path in paths:
-            with replacing(path) as temporary:
-                metadata = {"Date": None} if path.suffix == ".svg" else {"Software": None}
-                figure.savefig(temporary, dpi=DPI, metadata=metadata)
-    return paths
+        for kind, metadata in (("png", {"Software": None}), *([("svg", {"Date": None})] if svg else [])):
+            stream = io.BytesIO()
+            figure.savefig(stream, format=kind, dpi=DPI, metadata=metadata)
+            pictures[stem.with_suffix(f".{kind}")] = stream.getvalue()
+    return pictures

@@ -1,7 +1,9 @@
 """Charts that figures, pages and reports share: a linkage in its plane, crank power over the turn, a figure as SVG."""
 
 import io
-from collections.abc import Sequence
+import warnings
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
@@ -18,10 +20,19 @@ from fes_mj.style import COLOURS, LINKS, X_LABEL
 PLOTTED = 720  # points of a curve at most
 
 
+@contextmanager
+def any_letters() -> Iterator[None]:
+    """Draw without a word about letters that the font lacks; a picture shows boxes for them."""
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "Glyph .* missing from")
+        yield
+
+
 def svg_text(figure: Figure) -> str:
     """The figure as an <svg> element; the same figure gives the same text."""
     stream = io.StringIO()
-    figure.savefig(stream, format="svg", transparent=True, metadata={"Date": None, "Creator": None})
+    with any_letters():
+        figure.savefig(stream, format="svg", transparent=True, metadata={"Date": None, "Creator": None})
     text = stream.getvalue()
     return text[text.index("<svg") :]
 

@@ -12,7 +12,7 @@ from fes_mj.arrays import Picture
 from fes_mj.crosscheck import Case
 from fes_mj.style import BAD, COLOURS, FAINT, GOOD, INK, STYLE, literal
 from fes_mj.units import RPM
-from fes_mj.viewing.charts import plot_power
+from fes_mj.viewing.charts import any_letters, plot_power
 
 _DPI = 100
 
@@ -25,7 +25,7 @@ class PowerPanel:
         steps = len(run.crank_angle) // run.turns
         self._angle = np.degrees(run.crank_angle[:steps]) % 360
         self._power = run.power[:steps]
-        with mpl.rc_context(STYLE):
+        with mpl.rc_context(STYLE), any_letters():
             figure = Figure(figsize=(width / _DPI, height / _DPI), dpi=_DPI, facecolor="white")
             canvas = FigureCanvasAgg(figure)
             self._axes = figure.add_axes((0.14, 0.30, 0.81, 0.49))

@@ -12,7 +12,7 @@ from fes_mj.arrays import FloatArray, IntArray, Picture
 from fes_mj.console import progress_bar
 from fes_mj.crosscheck import Case
 from fes_mj.design import BODIES
-from fes_mj.errors import require_extra
+from fes_mj.errors import InputError, MissingPartError, require_extra
 from fes_mj.files import replacing
 from fes_mj.geometry import bounding_box
 from fes_mj.simulation.bench import Simulation
@@ -33,13 +33,17 @@ LABEL_CLEARANCE, LABEL_SPACING = 0.22, 0.26  # m: of the rows of names from the 
 def render_video(case: Case, path: Path, quiet: bool = False) -> None:
     """Write an H.264 video of one measured turn, shown REPEATS times, to `path`.
 
-    Raises MissingPartError if OpenGL or a package of the extra "video" is missing.
+    Raises MissingPartError if OpenGL, ffmpeg or a package of the extra "video" is missing, InputError if the file
+    cannot be written.
     """
     mediapy = require_extra("video", "mediapy", "imageio_ffmpeg", "matplotlib", "PIL")
     from fes_mj.viewing.power_panel import PowerPanel
 
     use_offscreen_gl()
-    mediapy.set_ffmpeg(require_extra("video", "imageio_ffmpeg").get_ffmpeg_exe())
+    try:
+        mediapy.set_ffmpeg(require_extra("video", "imageio_ffmpeg").get_ffmpeg_exe())
+    except RuntimeError:
+        raise MissingPartError("there is no ffmpeg; it comes with: pip install 'fes-mj[video]'") from None
     run = case.simulation
     shown = np.linspace(0, len(run.crank_angle) // run.turns, FRAMES, endpoint=False).astype(int)
     panel, shape = PowerPanel(case, PLOT_WIDTH, HEIGHT), (HEIGHT, SCENE_WIDTH + PLOT_WIDTH)
@@ -48,9 +52,13 @@ def render_video(case: Case, path: Path, quiet: bool = False) -> None:
         for step, scene in zip(shown, scenes(run, shown), strict=True):
             frames.append(np.hstack([scene, panel.frame(int(step))]))
             advance(1)
-        with mediapy.VideoWriter(beside, shape, fps=FRAMES_PER_SECOND, crf=20) as writer:
-            for frame in frames * REPEATS:
-                writer.add_image(frame)
+        try:
+            with mediapy.VideoWriter(beside, shape, fps=FRAMES_PER_SECOND, crf=20) as writer:
+                for frame in frames * REPEATS:
+                    writer.add_image(frame)
+        except (RuntimeError, BrokenPipeError) as error:  # the encoder ended, with words or without
+            reason = str(error).rpartition("] ")[2].strip()
+            raise InputError(f"{path}: cannot be written: the encoder stopped: {reason}") from None
 
 
 def scenes(run: Simulation, steps: IntArray) -> Iterator[Picture]:
