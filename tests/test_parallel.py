@@ -85,6 +85,44 @@ def test_a_sweep_survives_kill_9(tmp_path: Path) -> None:
     assert points == list(range(40_000))
 
 
+LONG = """
+from fes_mj.cli.process import prepare
+from fes_mj.parallel import Workers, run_tasks
+from tests.test_parallel import slow
+prepare()
+for _, (pid, _) in run_tasks(slow, [0.2, 0.2, *[300.0] * 4], Workers(jobs=2)):
+    print(pid, flush=True)
+"""
+
+
+def lives(pid: int) -> bool:
+    """Whether a process runs; one that ended and was not asked about yet does not."""
+    try:
+        return "State:\tZ" not in Path(f"/proc/{pid}/status").read_text()
+    except (FileNotFoundError, ProcessLookupError):
+        return False
+
+
+@pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="looks into /proc to see what runs")
+@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
+def test_no_worker_outlives_its_parent(how: signal.Signals) -> None:
+    """The tasks would take minutes; the workers hold the pipe to whoever reads the results."""
+    root = Path(__file__).parents[1]
+    with subprocess.Popen(
+        [sys.executable, "-c", LONG], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, cwd=root, text=True
+    ) as process:
+        assert process.stdout
+        workers = {int(process.stdout.readline()) for _ in range(2)}
+        assert all(map(lives, workers))
+        process.send_signal(how)
+        process.stdout.read()  # until nobody holds it
+        process.wait()
+    deadline = time.monotonic() + 30
+    while any(map(lives, workers)) and time.monotonic() < deadline:
+        time.sleep(0.1)
+    assert not any(map(lives, workers))
+
+
 @pytest.fixture
 def cluster(tmp_path: Path) -> Iterator[tuple[str, list[subprocess.Popen[str]]]]:
     """Address of a Dask scheduler in its own process, and two worker processes without nannies."""

@@ -23,3 +23,8 @@ def test_inputs_are_told_apart_and_hashed(tmp_path: Path) -> None:
 def test_the_command_is_the_same_wherever_it_is_installed(program: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("sys.argv", [program, "static", "d1"])
     assert provenance()["command"] == "fes_mj static d1"
+
+
+def test_the_command_can_be_given_again_and_shown(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("sys.argv", ["fes_mj", "static", "my own.toml", "\udcff\x1b"])
+    assert provenance()["command"] == r"fes_mj static 'my own.toml' '\udcff\x1b'"

@@ -23,7 +23,7 @@ def test_export_writes_model_table_and_scene(tmp_path: Path, capsys: pytest.Capt
 
 def test_any_file_name_gives_valid_xml(tmp_path: Path) -> None:
     source = Path(str(files("fes_mj"))) / "data" / "designs" / "identified" / "r1.toml"
-    design, model = tmp_path / 'R&D --> "1".toml', tmp_path / 'R&D "1" <new>.xml'
+    design, model = tmp_path / 'R&D ---> "1".toml', tmp_path / 'R&D "1" <new>.xml'
     design.write_text(source.read_text())
     assert run(["export", str(design), "-o", str(model), "--scene"]) == 0
     for path in (model, tmp_path / "scene.xml"):
@@ -52,3 +52,40 @@ def test_bad_input_is_one_message_and_no_file(
     assert "Traceback" not in written.err
     assert not written.out
     assert not [*tmp_path.iterdir()]
+
+
+@pytest.mark.parametrize(
+    ("inputs", "output", "flags", "eaten"),
+    [
+        ("mine.toml m.csv", "m.xml", [], "m.csv"),  # the table beside the model
+        ("mine.toml m.xml", "m.xml", [], "m.xml"),
+        ("scene.xml.toml scene.xml", "a.xml", ["--scene"], "scene.xml"),
+        ("mine.toml LINK.csv", "m.xml", [], "m.csv"),
+    ],
+)
+def test_no_output_replaces_an_input(
+    inputs: str, output: str, flags: list[str], eaten: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    design, moments = inputs.split()
+    Path(design).write_bytes((files("fes_mj") / "data" / "designs" / "identified" / "r1.toml").read_bytes())
+    Path(eaten).write_text("crank_angle_deg,knee_Nm,hip_Nm\n0,1,2\n90,20,-3\n")
+    if not Path(moments).exists():
+        Path(moments).symlink_to(eaten)
+    before = {path: path.read_bytes() for path in tmp_path.iterdir()}
+    assert run(["export", design, "--moments", moments, "-o", output, *flags]) == 2
+    assert {path: path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
+@pytest.mark.parametrize(("stranger", "flags"), [("a.csv", []), ("scene.xml", ["--scene"])])
+def test_a_file_that_nobody_named_is_replaced_only_if_it_is_ours(
+    stranger: str, flags: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    arguments = ["export", "d1", "-o", str(tmp_path / "a.xml"), *flags]
+    (tmp_path / stranger).write_text("crank_angle_deg,knee_Nm,hip_Nm\n")
+    assert run(arguments) == 2
+    assert f"{stranger}: cannot write the " in capsys.readouterr().err
+    assert [path.name for path in tmp_path.iterdir()] == [stranger]
+    (tmp_path / stranger).unlink()
+    assert run(arguments) == 0
+    assert run([*arguments, "--variant", "two-legs"]) == 0

@@ -5,12 +5,15 @@
 
 import math
 import random
+import sys
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
 
 from fes_mj.cli.app import run
+from fes_mj.design import BRANCHES
 from fes_mj.design_file import DESIGNS
 
 DATA = Path(__file__).parents[2] / "fes_mj" / "data"
@@ -20,10 +23,16 @@ ODD = (
     *("nan", "inf", "-inf", "1e999", "-1e999", "1e-320", "0", "-0.0", "-1", "1e9", "99999999999999999999", "0x10"),
     *("true", '""', '"0.5"', "'''\n'''", "[]", "[1]", "[1, 2, 3]", "[0.1, nan]", '["a", "b"]', "[[1], 2]", "{}"),
     *("1979-05-27", "07:32:00", "half", "", "0.5 0.5", "=", "#", "\x00", "\ufeff", "\xe9", "\u202e", "\u0663", "1_0"),
+    *('"left"', '"right"', '"Left"', "left", '"up"', '["left"]'),
 )
 ODD_FLAGS = (
     *("", " ", "nan", "-inf", "1e400", "0", "-5", "\u0663", "p1p2", "--", "-", "\xe9" * 300, "a\nb", "../..", "."),
     "/dev/null",
+)
+
+# Of these, names of files are made.
+ODD_LETTERS = (
+    "ab.-$[]{}<>&'\"# \\=*?%~:|\t\n\x01\x1b\x7f\xa0\u0301é自\u200d\u202e\u2028\ufeff\uffff\udc80\udcff\U0001f6b2"
 )
 
 Mutation = Callable[[random.Random, str], str]
@@ -74,7 +83,7 @@ def _value(source: random.Random, text: str) -> str:
 def _key(source: random.Random, text: str) -> str:
     """A key, table or column has another name."""
     old = source.choice(
-        ["R1", "R2", "R6", "R10", "gear_ratio", "linkage", "rider", "kind", "knee_Nm", "crank_angle_deg"]
+        ["R1", "R2", "R6", "R10", "branch", "gear_ratio", "linkage", "rider", "kind", "knee_Nm", "crank_angle_deg"]
     )
     return text.replace(old, source.choice(["", "R99", old.upper(), old + " ", f'"{old}"', "linkage.x"]), 1)
 
@@ -103,11 +112,13 @@ def _check_answer(code: int, capsys: pytest.CaptureFixture[str], allowed: tuple[
         assert len(captured.err) < 4000
     else:
         assert captured.err == ""
+    assert (captured.out + captured.err).replace("\n", "").isprintable()
 
 
 def _fuzz_designs(seed: int, count: int, folder: Path, capsys: pytest.CaptureFixture[str]) -> int:
     path, refused = folder / "fuzzed.toml", 0
     originals = [(DATA / "designs" / "identified" / f"{name}.toml").read_text() for name in DESIGNS]
+    originals += [text.replace("R1 =", f'branch = "{side}"\nR1 =') for text in originals for side in BRANCHES]
     for number, original in enumerate(originals):
         for text in broken(seed + number, original, count):
             path.write_text(text, encoding="utf-8", errors="surrogatepass")
@@ -166,8 +177,62 @@ def _fuzz_flags(seed: int, count: int, folder: Path, capsys: pytest.CaptureFixtu
     assert list(folder.iterdir()) == []
 
 
+def _fuzz_names(seed: int, count: int, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Files with odd names, there or not: what is printed of them can be shown."""
+    source = random.Random(seed)
+    design = (DATA / "designs" / "identified" / "d1.toml").read_bytes()
+    moments = b"crank_angle_deg,knee_Nm,hip_Nm\n0,1,2\n90,20,-3\n200,-5,4\n"
+    for _ in range(count):
+        length = source.choice((0, 1, 1, 3, 8, 60, 200))
+        stems = ["".join(source.choices(ODD_LETTERS, k=length)) for _ in range(2)]
+        paths = [folder / f"{stem}{suffix}" for stem, suffix in zip(stems, (".toml", ".csv"), strict=True)]
+        for path, content in zip(paths, (design, moments), strict=True):
+            if source.random() < 0.8:
+                with suppress(OSError):  # a longer name than the system takes
+                    path.write_bytes(content)
+        code = run(["static", str(paths[0]), "--moments", str(paths[1])])
+        written = list(folder.iterdir())
+        _check_answer(code, capsys, (0,) if len(written) == 2 else (2,))
+        for path in written:
+            path.unlink()
+
+
+def _fuzz_outputs(seed: int, count: int, folder: Path, capsys: pytest.CaptureFixture[str]) -> int:
+    """Models written among inputs, links to them and files of others, all of which stay as they are."""
+    source, refused = random.Random(seed), 0
+    design = (DATA / "designs" / "identified" / "r1.toml").read_bytes()
+    moments = b"crank_angle_deg,knee_Nm,hip_Nm\n0,1,2\n90,20,-3\n200,-5,4\n"
+    stems = ("a", "b", "scene")
+    for _ in range(count):
+        (folder / "design.toml").write_bytes(design)
+        real = folder / f"{source.choice(stems)}.{source.choice(('csv', 'xml'))}"
+        real.write_bytes(moments)
+        given = source.choice((real, folder / f"{source.choice(stems)}.csv"))
+        if given != real and source.random() < 0.5:
+            given.symlink_to(real)
+        elif given != real:
+            given.hardlink_to(real)
+        stranger = folder / f"{source.choice(stems)}.csv"
+        if not stranger.exists():
+            stranger.write_text("of somebody else")
+        kept = {path: path.read_bytes() for path in (folder / "design.toml", real, given, stranger)}
+        out = folder / f"{source.choice(stems)}.{source.choice(('xml', 'XML', 'csv'))}"
+        scene = ["--scene"] if source.random() < 0.5 else []
+        code = run(["export", str(folder / "design.toml"), "--moments", str(given), "-o", str(out), *scene])
+        refused += code == 2
+        _check_answer(code, capsys)
+        # what was named to be written may be replaced, unless it is read
+        assert all(
+            path.read_bytes() == content for path, content in kept.items() if path != out or path in (real, given)
+        )
+        assert not [path for path in folder.iterdir() if path.name.startswith(".")]
+        for path in folder.iterdir():
+            path.unlink()
+    return refused
+
+
 def test_broken_design_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert _fuzz_designs(1, 30, tmp_path, capsys) > 90
+    assert _fuzz_designs(1, 10, tmp_path, capsys) > 90
 
 
 def test_broken_moments_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -189,6 +254,15 @@ def test_broken_study_and_problem_files(
 def test_broken_flags(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     _fuzz_flags(3, 250, tmp_path, capsys)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems refuse such names themselves")
+def test_odd_names(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    _fuzz_names(8, 60, tmp_path, capsys)
+
+
+def test_outputs_among_inputs(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert 20 < _fuzz_outputs(9, 60, tmp_path, capsys) < 60
 
 
 @pytest.mark.parametrize("data", [b"", b"\xff\xfe", b"\x00" * 100, b"\xef\xbb\xbf", bytes(range(256)), b"[" * 20_000])
@@ -240,11 +314,14 @@ def test_moments_that_do_nothing_are_checked_like_others(tmp_path: Path, capsys:
 def test_thousands_of_broken_inputs(
     tmp_path_factory: pytest.TempPathFactory, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    folders = [tmp_path_factory.mktemp(name) for name in ("designs", "moments", "flags")]
-    _fuzz_designs(1000, 1000, folders[0], capsys)
+    folders = [tmp_path_factory.mktemp(name) for name in ("designs", "moments", "flags", "names")]
+    _fuzz_designs(1000, 350, folders[0], capsys)
     _fuzz_moments(2000, 2500, folders[1], capsys)
     monkeypatch.chdir(folders[1])
     _fuzz_files(STUDY, EXAMPLES / "study.toml", 5000, 1000, folders[1], capsys)
     _fuzz_files(PROBLEM, DATA / "optimization.toml", 6000, 1000, folders[1], capsys)
     monkeypatch.chdir(folders[2])
     _fuzz_flags(3000, 4000, folders[2], capsys)
+    _fuzz_outputs(9000, 500, folders[3], capsys)
+    if sys.platform == "linux":
+        _fuzz_names(8000, 1000, folders[3], capsys)

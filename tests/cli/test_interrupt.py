@@ -46,11 +46,11 @@ def test_an_interrupted_run_leaves_earlier_results(how: signal.Signals, tmp_path
     assert len(before) == 3
     code, errors = _stop(how, "simulate", "d1", "--turns", "300", "--out", str(tmp_path))
     assert _contents(tmp_path) == before
-    if how is signal.SIGINT:
-        assert code in INTERRUPTED
-        assert errors == "fes_mj: interrupted; nothing was left half-written\n"
-    else:
+    if how is signal.SIGKILL:
         assert code == -how
+    else:
+        assert code in ((143,) if how is signal.SIGTERM else INTERRUPTED)
+        assert errors == "fes_mj: interrupted; nothing was left half-written\n"
 
 
 def test_an_interrupted_validation_writes_nothing(tmp_path: Path) -> None:
@@ -99,3 +99,19 @@ def test_a_compiled_module_that_was_being_loaded_counts_as_interrupted(
     monkeypatch.setattr(cli, "app", missing)
     with pytest.raises(ImportError, match="no such module"):
         cli.run(["simulate", "d1"])
+
+
+@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_a_video_that_was_being_made_leaves_no_file(how: signal.Signals, tmp_path: Path) -> None:
+    command = [sys.executable, "-m", "fes_mj", "simulate", "d1", "-q", "--render", str(tmp_path / "v.mp4")]
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
+        begin = time.monotonic()
+        while not [*tmp_path.iterdir()]:  # the temporary file
+            assert process.poll() is None
+            assert time.monotonic() - begin < PATIENCE
+            time.sleep(0.02)
+        process.send_signal(how)
+        _, errors = process.communicate(timeout=PATIENCE)
+    assert process.returncode in (128 + how, *(INTERRUPTED if how is signal.SIGINT else ()))
+    assert errors == "fes_mj: interrupted; nothing was left half-written\n"
+    assert not [*tmp_path.iterdir()]

@@ -23,3 +23,18 @@ def test_without_matplotlib_the_extra_is_named(
     assert run(["reproduce", "--out", str(tmp_path)]) == 3
     assert "pip install 'fes-mj[video]'" in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
+
+
+def test_only_an_earlier_reproduction_is_replaced(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    from fes_mj.paper.reproduce import require_ours
+
+    results = Path(__file__).parents[2] / "results"
+    require_ours(results)
+    (tmp_path / "figures").mkdir()
+    require_ours(tmp_path)
+    (stranger := tmp_path / "figures" / "power.png").touch()
+    assert run(["reproduce", "--out", str(tmp_path)]) == 2
+    assert "this folder is not empty and holds no reproduction.json; name a new one" in capsys.readouterr().err
+    stranger.rename(tmp_path / "reproduction.json")
+    assert run(["reproduce", "--out", str(tmp_path)]) == 2
+    assert "a file that fes_mj did not write" in capsys.readouterr().err

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from fes_mj.cli.app import run
 from fes_mj.design_file import load_design
 from fes_mj.time_step import steps_per_turn
 from tests.cli.conftest import answer, result
@@ -67,3 +68,28 @@ def test_the_json_reports_the_step_it_was_simulated_with(
     design = load_design("d1")
     steps = steps or steps_per_turn(design, design.linkage.cadence)
     assert content["timestep_s"] * steps == pytest.approx(60 / content["cadence_rpm"], rel=1e-12)
+
+
+def test_results_replace_only_results(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The folder is named, its files are not: what others put there stays, and nothing runs."""
+    measured = tmp_path / "d1-m.csv"
+    measured.write_text("crank_angle_deg,knee_Nm,hip_Nm\n0,1,2\n90,20,-3\n")
+    (moments := tmp_path / "m.csv").symlink_to(measured)
+    assert run(["simulate", "d1", "--moments", str(moments), "--out", str(tmp_path)]) == 2
+    assert "d1-m.csv: cannot write the results: it would replace" in capsys.readouterr().err
+    measured.rename(moments)
+    for suffix in ("json", "csv", "xml"):
+        (stranger := tmp_path / f"d1-m.{suffix}").write_text("{}")
+        assert run(["simulate", "d1", "--moments", str(moments), "--out", str(tmp_path)]) == 2
+        assert f"d1-m.{suffix}: cannot write the results: a file that fes_mj did not" in capsys.readouterr().err
+        assert {*tmp_path.iterdir()} == {moments, stranger}
+        stranger.unlink()
+    for _ in range(2):
+        assert run(["simulate", "d1", "--moments", str(moments), "--out", str(tmp_path), "-q"]) in (0, 1)
+    assert len([*tmp_path.iterdir()]) == 4
+
+
+def test_a_video_does_not_replace_an_input(tmp_path: Path) -> None:
+    (moments := tmp_path / "m.mp4").write_text("crank_angle_deg,knee_Nm,hip_Nm\n0,1,2\n90,20,-3\n")
+    assert run(["simulate", "d1", "--moments", str(moments), "--render", str(moments)]) == 2
+    assert moments.read_text().startswith("crank")

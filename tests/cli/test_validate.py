@@ -101,3 +101,14 @@ def test_the_json_reports_the_step_of_every_run(capsys: pytest.CaptureFixture[st
         design = load_design(each["design"])
         steps = steps_per_turn(design, design.linkage.cadence)
         assert each["timestep_s"] * steps == pytest.approx(60 / each["cadence_rpm"], rel=1e-12)
+
+
+@pytest.mark.parametrize(("option", "name"), [("--report", "m.html"), ("--junit", "m.xml")])
+def test_no_report_replaces_an_input(
+    option: str, name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    pytest.importorskip("jinja2")
+    (moments := tmp_path / name).write_text("crank_angle_deg,knee_Nm,hip_Nm\n0,1,2\n90,20,-3\n")
+    assert run(["validate", "d1", "--moments", str(moments), option, str(moments)]) == 2
+    assert "which this command reads" in capsys.readouterr().err
+    assert moments.read_text().startswith("crank")

@@ -17,3 +17,10 @@ def test_junit_reports_failures() -> None:
     failure = suite.find("testcase/failure")
     assert failure is not None
     assert "1 m (limit 1e-05 m)" in failure.get("message", "")
+
+
+def test_the_file_says_the_encoding_it_is_written_in() -> None:
+    """Whatever the locale is."""
+    from fes_mj.verification.junit import junit_xml
+
+    assert junit_xml(()).startswith("<?xml version='1.0' encoding='utf-8'?>")

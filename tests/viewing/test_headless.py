@@ -45,3 +45,11 @@ def test_the_wheel_serves_where_the_system_has_nothing(tmp_path: Path) -> None:
     done = subprocess.run([sys.executable, "-c", script, str(path)], capture_output=True, text=True, env=clean)
     assert (done.returncode, done.stderr) == (0, "")
     assert len(frames_of(path)[1]) == 4
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems always have a screen")
+def test_glfw_without_a_screen_does_not_count(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It makes no context, says nothing, and fails only when something is drawn."""
+    for name in ("DISPLAY", "WAYLAND_DISPLAY"):
+        monkeypatch.delenv(name, raising=False)
+    assert not headless._works("glfw")

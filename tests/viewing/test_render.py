@@ -34,3 +34,37 @@ def test_without_the_video_packages_the_message_names_the_extra(
     assert run(["simulate", "trt", "--render", str(tmp_path / "out.mp4")]) == 3
     assert "pip install 'fes-mj[video]'" in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")  # mediapy leaves the encoder's pipe
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
+def test_a_full_disk_is_one_message(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The encoder, a process of its own, meets it."""
+    import mediapy
+
+    class Full(mediapy.VideoWriter):
+        def __init__(self, path: Path, *arguments: object, **options: object) -> None:
+            super().__init__("/dev/full", *arguments, ffmpeg_args="-f mp4", **options)
+
+    monkeypatch.setattr("fes_mj.viewing.render.FRAMES", 2)
+    monkeypatch.setattr(mediapy, "VideoWriter", Full)
+    assert run(["simulate", "d1", "-q", "--render", str(tmp_path / "v.mp4")]) == 2
+    error = capsys.readouterr().err
+    assert error.startswith(f"fes_mj: {tmp_path}/v.mp4: cannot be written: the encoder stopped: ")
+    assert error.count("\n") == 1
+    assert not [*tmp_path.iterdir()]
+
+
+def test_without_ffmpeg_the_message_names_the_extra(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    import imageio_ffmpeg
+
+    def missing() -> str:
+        raise RuntimeError("No ffmpeg exe could be found.")
+
+    monkeypatch.setattr(imageio_ffmpeg, "get_ffmpeg_exe", missing)
+    assert run(["simulate", "d1", "-q", "--render", str(tmp_path / "v.mp4")]) == 3
+    assert "there is no ffmpeg; it comes with: pip install 'fes-mj[video]'" in capsys.readouterr().err
