@@ -4,8 +4,8 @@ import csv
 import json
 import math
 import os
+import secrets
 import shutil
-import tempfile
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
@@ -248,18 +248,14 @@ def _named(path: Path) -> Iterator[None]:
 
 @contextmanager
 def _beside(path: Path) -> Iterator[Path]:
-    """An empty temporary file in the folder of `path`, with its suffix; gone afterwards."""
+    """An empty temporary file in the folder of `path`, with its suffix; gone afterwards, whenever a signal comes."""
+    temporary = path.with_name(f".fes_mj-{secrets.token_hex(8)}{path.suffix}")
     with _named(path):
-        handle, name = tempfile.mkstemp(dir=path.parent, prefix=".fes_mj-", suffix=path.suffix)
-    temporary = Path(name)
-    try:
-        os.close(handle)
-        umask = os.umask(0)
-        os.umask(umask)
-        temporary.chmod(0o666 & ~umask)  # mkstemp's files are private; ours are ordinary
-        yield temporary
-    finally:
-        temporary.unlink(missing_ok=True)
+        try:
+            temporary.touch(exist_ok=False)
+            yield temporary
+        finally:
+            temporary.unlink(missing_ok=True)
 
 
 @contextmanager
@@ -268,7 +264,7 @@ def replacing(path: Path) -> Iterator[Path]:
 
     Raises InputError for what the system refuses: a full disk, a folder that is gone or cannot be written to.
     """
-    with _beside(path) as temporary, _named(path):
+    with _beside(path) as temporary:
         yield temporary
         temporary.replace(path)
 

@@ -6,9 +6,11 @@ import sys
 from fes_mj.cli.process import interruption_code, prepare
 from fes_mj.errors import InputError
 
+AGREES, DISAGREES, BAD_INPUT, MISSING_PART = 0, 1, 2, 3
 INTERRUPTION = "interrupted; nothing was left half-written"
 PURPOSE = "Does a pedalling linkage for FES cycling deliver its power when legs have mass and loops must close?"
 # The help lines stand here so that `--help` need not import the commands, nor anything else.
+EXIT_CODES = "Exit codes: 0 agrees, 1 does not, 2 bad input, 3 a needed part is missing, 130 Ctrl-C, 143 SIGTERM."
 COMMANDS = {
     "simulate": "Simulate a design in MuJoCo and compare its crank power with statics.",
     "static": "Mean crank power of a design by statics, without MuJoCo.",
@@ -29,7 +31,7 @@ def main() -> None:
         sys.exit(_run(sys.argv[1:]))
     except InputError as error:
         print(f"fes_mj: {error}", file=sys.stderr)
-        sys.exit(2)
+        sys.exit(BAD_INPUT)
     except KeyboardInterrupt as error:
         print(f"fes_mj: {INTERRUPTION}", file=sys.stderr)
         sys.exit(interruption_code(error))
@@ -51,7 +53,7 @@ def _run(arguments: list[str]) -> int:
         return run()
     print(text)
     sys.stdout.flush()
-    return 0
+    return AGREES
 
 
 def _help() -> str:
@@ -61,4 +63,6 @@ def _help() -> str:
         ("--version", "Show the version."),
     ]
     lines = [f"  {name:12}{text}" for name, text in rows]
-    return "\n".join(["Usage: fes_mj COMMAND [...]", "", PURPOSE, "", *lines, "", "fes_mj COMMAND --help says more."])
+    return "\n".join(
+        ["Usage: fes_mj COMMAND [...]", "", PURPOSE, "", *lines, "", EXIT_CODES, "fes_mj COMMAND --help says more."]
+    )

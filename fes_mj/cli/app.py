@@ -5,13 +5,12 @@ from collections.abc import Sequence
 
 from cyclopts import App, CycloptsError
 
-from fes_mj.cli import COMMANDS, INTERRUPTION, PURPOSE
+from fes_mj.cli import AGREES, BAD_INPUT, COMMANDS, DISAGREES, INTERRUPTION, MISSING_PART, PURPOSE
 from fes_mj.cli.process import interruption_code
 from fes_mj.console import errors
 from fes_mj.errors import InputError, MissingPartError, UnstableError
 from fes_mj.text import printable
 
-AGREES, DISAGREES, BAD_INPUT, MISSING_PART = 0, 1, 2, 3
 LONGEST_MESSAGE = 1000  # characters
 
 app = App(name="fes_mj", help=PURPOSE, suppress_keyboard_interrupt=False)

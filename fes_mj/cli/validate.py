@@ -94,6 +94,7 @@ def _cases(designs: Sequence[str], options: RunOptions, quick: bool) -> Iterator
 
 def _check_files(report: Path | None, junit: Path | None, video: Path | None, inputs: list[Path]) -> None:
     """Refuse unusable files, and a missing package, before anything runs."""
+    inputs = [*inputs, video] if video else inputs
     if report:
         require_writable(report, "the report", ".html", inputs)
         from fes_mj.viewing.pages import require_page_packages

@@ -1,11 +1,14 @@
 """A design running in MuJoCo's interactive viewer, under the torque map and the crank servo."""
 
 import time
+import warnings
 
+import glfw
 import mujoco
 import mujoco.viewer
 
 from fes_mj.design import TWO_LEGS, Design
+from fes_mj.errors import MissingPartError
 from fes_mj.moments import JointMoments
 from fes_mj.simulation.bench import joint_drives
 from fes_mj.simulation.export import mjcf_text, scene_text
@@ -15,7 +18,14 @@ from fes_mj.torque_map import torque_map
 
 
 def show(design: Design, moments: JointMoments, cadence: float) -> None:
-    """Run in real time, two legs, until the viewer is closed."""
+    """Run in real time, two legs, until the viewer is closed. Raises MissingPartError without a screen."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # the reason, which is always the same
+        if not glfw.init():  # the viewer itself would end the process
+            raise MissingPartError(
+                "the viewer needs a screen and there is none; make a video instead: "
+                "fes_mj simulate ... --render out.mp4"
+            )
     model = mujoco.MjModel.from_xml_string(
         scene_text(design, "model.xml"), {"model.xml": mjcf_text(build_mjcf(design, cadence=cadence, legs=2)).encode()}
     )
