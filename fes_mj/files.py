@@ -16,6 +16,7 @@ from typing import Any, NoReturn
 from fes_mj.errors import InputError
 
 LARGEST_INPUT = 64 * 2**20  # bytes; a day of measured moments is smaller
+MARKED = 4096  # bytes: the beginning of a file of ours, which can hold its name twice and escaped
 
 
 def read_text(path: Path, what: str) -> str:
@@ -222,12 +223,12 @@ def require_writable(path: Path, what: str, suffix: str = "", inputs: Iterable[P
 def require_replaceable(path: Path, what: str, mark: str, inputs: Iterable[Path] = ()) -> None:
     """As require_writable, for a file that the user did not name but that is written beside one or into a folder.
 
-    A file that is there is replaced only if `mark` is in its first thousand bytes, as in all that fes_mj writes there.
+    A file that is there is replaced only if `mark` is in its first MARKED bytes, as in all that fes_mj writes there.
     """
     require_writable(path, what, inputs=inputs)
     if path.exists():
         with _named(path), path.open("rb") as file:
-            ours = mark.encode() in file.read(1000)
+            ours = mark.encode() in file.read(MARKED)
         if not ours:
             raise InputError(
                 f"{path}: cannot write {what}: a file that fes_mj did not write has this name; "

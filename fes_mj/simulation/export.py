@@ -28,7 +28,7 @@ VARIANTS: dict[str, dict[str, Any]] = {
     "two-legs": {"legs": 2},
     "compatible": {"integrator": "euler"},
 }
-# What of each file stands in its first thousand bytes and in nobody else's file.
+# What of each file stands at its beginning (files.MARKED) and in nobody else's file.
 MARKS = {"model": "Written by fes_mj", "scene": ' scene">\n  <include file="', "table": ",quasi_static_crank_Nm\n"}
 SIDECAR_ROWS = 720  # a turn: every half degree
 CAMERA_SIDE = (-0.55, 0.80, 0.25)  # of the oblique camera: from the front right, a little above
