@@ -32,6 +32,16 @@ class Extrapolation:
     sd: float
     excess: PerJoint[float]
 
+    @property
+    def verdict(self) -> str | None:
+        """What it means for the result, in words; None where nothing is extrapolated."""
+        if not self.share:
+            return None
+        return (
+            f"for {100 * self.share:.1f} % of the turn, in which {100 * self.work_share:.1f} % of the work is done, no "
+            f"moments are known, which makes the mean power unsure by another {self.sd:.2g} W"
+        )
+
 
 def extrapolation(
     motion: Motion, torque: TorqueMap, joint_moment: PerJoint[FloatArray], cadence: float

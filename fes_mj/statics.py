@@ -115,21 +115,13 @@ class QuasiStatic:
     @property
     def notes(self) -> list[str]:
         """What a reader must know of the result: joint angles for which the torque map has no data."""
-        found = self.extrapolation
-        remarks = [
+        return [
             f"the {joint} moves {np.degrees(excess):.1f} deg beyond the range of the moments "
             f"({low:.1f} to {high:.1f} deg); the moment at its end is kept there"
-            for joint, excess in found.excess.items()
+            for joint, excess in self.extrapolation.excess.items()
             for low, high in [np.degrees(self.torque.reference.ranges[joint])]
             if excess > NO_MORE
         ]
-        if remarks:
-            remarks.append(
-                f"EXTRAPOLATED for {100 * found.share:.1f} % of the turn, in which {100 * found.work_share:.1f} % of "
-                f"the work is done: no moments were measured there, which makes the mean power unsure by another "
-                f"{found.sd:.2g} W"
-            )
-        return remarks
 
     def summary(self) -> dict[str, Any]:
         """The keys that every result of a run has, as JSON names and units them."""
@@ -144,6 +136,7 @@ class QuasiStatic:
             "work_per_turn_J": self.work_per_turn,
             "knee_range_deg": self.joint_range_deg.knee,
             "hip_range_deg": self.joint_range_deg.hip,
+            "extrapolation": self.extrapolation.verdict,
             "extrapolated_share": self.extrapolation.share,
             "extrapolated_work_share": self.extrapolation.work_share,
             "extrapolation_sd_W": self.extrapolation.sd,

@@ -93,6 +93,8 @@ def test_the_share_of_a_known_excursion() -> None:
     assert found.sd == pytest.approx(by_hand, rel=1e-3)
     inside = fes_mj.quasi_static(trt, moments)
     assert inside.extrapolation.share == inside.extrapolation.sd == 0
+    assert inside.extrapolation.verdict is None
+    assert inside.notes == []
 
 
 def test_the_error_bar_grows_with_the_excess() -> None:
@@ -105,4 +107,5 @@ def test_the_error_bar_grows_with_the_excess() -> None:
     for each in results:
         assert each.power_sd is not None
         assert each.power_sd > each.extrapolation.sd
-        assert any("EXTRAPOLATED" in note for note in each.notes)
+        assert each.summary()["extrapolation"] == each.extrapolation.verdict
+        assert any("beyond the range of the moments" in note for note in each.notes)

@@ -7,7 +7,7 @@ import numpy as np
 from cyclopts import Parameter
 
 from fes_mj.cli.options import RunOptions
-from fes_mj.console import print_table, say
+from fes_mj.console import conclude, print_table, say
 from fes_mj.files import json_text
 from fes_mj.statics import QuasiStatic, quasi_static
 from fes_mj.units import RPM
@@ -72,10 +72,12 @@ def force_rows(forces: dict[str, Any]) -> list[tuple[str, str, str]]:
     return [(name, f"{size.mean():.1f}", f"{size.max():.1f}") for name, size in sizes.items()]
 
 
-def print_notes(result: QuasiStatic) -> None:
-    """Print what a reader must know of the result, if anything."""
+def print_notes(result: QuasiStatic, of: str = "") -> None:
+    """Print what a reader must know of a result, if anything; of: which one, where there are several."""
     for note in result.notes:
-        say(f"note: {note}")
+        say(f"note: {of}{note}")
+    if result.extrapolation.verdict:
+        conclude(False, f"{of}EXTRAPOLATED", f": {result.extrapolation.verdict}.")
 
 
 def _curves(result: QuasiStatic) -> dict[str, Any]:

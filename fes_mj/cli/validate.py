@@ -13,6 +13,7 @@ from cyclopts import Parameter
 from fes_mj.checks import Check, definitions
 from fes_mj.cli.options import RunOptions
 from fes_mj.cli.simulate import check_rows
+from fes_mj.cli.static import print_notes
 from fes_mj.console import conclude, print_table, say, track
 from fes_mj.design_file import DESIGNS
 from fes_mj.errors import InputError
@@ -149,6 +150,8 @@ def _print(
         for case in cases:
             _print_details(case)
     _print_runs(cases)
+    for case in cases:
+        print_notes(case.static, f"{case.name}: ")
     if detections:
         _print_faults(detections)
     failed = [f"{each.name} ({each.subject})" for each in checks if not each.ok]
