@@ -7,7 +7,7 @@ the loops it draws in the moment-angle plane: a sum over its reversals, where no
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 from scipy.integrate import cumulative_trapezoid
@@ -15,7 +15,10 @@ from scipy.integrate import cumulative_trapezoid
 from fes_mj.arrays import BoolArray, FloatArray, IntArray
 from fes_mj.batch import batch_size, take
 from fes_mj.design import Design
-from fes_mj.geometry import SCAN, turning
+from fes_mj.errors import InputError
+from fes_mj.extrapolation import beyond, drift_area, never_inside, outside_share
+from fes_mj.fourier import fourier
+from fes_mj.geometry import SCAN, obstacles
 from fes_mj.joints import PerJoint
 from fes_mj.kinematics import joint_angles, positions
 from fes_mj.moments import JointMoments
@@ -29,6 +32,7 @@ Moments: TypeAlias = Callable[[str, FloatArray], FloatArray]
 TURN_POINTS = len(SCAN)
 # Positions in a block: its arrays stay in the processor's cache, where a position costs half of what it does outside.
 BLOCK_POSITIONS = 8000
+_NEGLIGIBLE = 1e-9  # part of the largest variance of moments; directions below it are rounding
 _TABLE_STEPS = 5400  # over the 1.5 turns that source_angle returns
 
 
@@ -37,11 +41,14 @@ class WorkTable:
 
     def __init__(self, moments: Moments, measured_on: ReferenceTricycle) -> None:
         """moments: called with a joint and crank angles (m,) from top dead centre, rad; returns N m, (m, sets)."""
-        self._measured_on, grid = measured_on, np.linspace(-np.pi, 2 * np.pi, _TABLE_STEPS + 1)
+        self.measured_on, grid = measured_on, np.linspace(-np.pi, 2 * np.pi, _TABLE_STEPS + 1)
         rate = measured_on.joint_rates(grid)
         self._work = PerJoint.of(
             lambda joint: cumulative_trapezoid(moments(joint, grid) * rate[joint][:, None], grid, axis=0, initial=0)
         )
+        once = grid[grid >= 0][:-1]
+        # N m, by which the first set of moments varies inside the range: what is not known of it outside
+        self.spread = PerJoint.of(lambda joint: float(moments(joint, once)[:, 0].std()))
 
     @classmethod
     def of(cls, *moments: JointMoments) -> "WorkTable":
@@ -58,7 +65,7 @@ class WorkTable:
 
     def area(self, joint: str, angle: FloatArray) -> FloatArray:
         """Work of extending to `angle` (rad, shape (m,)) and flexing back, J, shape (m, sets), up to a constant."""
-        source = self._measured_on.source_angle
+        source = self.measured_on.source_angle
         return self._at(joint, source(joint, angle, 1.0)) - self._at(joint, source(joint, angle, -1.0))
 
     def _at(self, joint: str, source: FloatArray) -> FloatArray:
@@ -68,23 +75,51 @@ class WorkTable:
         return np.asarray(work[index] + (position - index)[:, None] * (work[index + 1] - work[index]))
 
 
+def uncertain_table(moments: JointMoments) -> WorkTable:
+    """Table whose first set of moments is the given one, the others its deviations along independent directions.
+
+    A power p, shape (sets,), has the mean p[0] and the standard deviation |p[1:]|. Raises InputError for moments
+    whose covariance is not known.
+    """
+    if moments.covariance is None:
+        raise InputError(
+            f"{moments.name}: nothing is known of the error of these moments; only a rider group's have one"
+        )
+    variance, directions = np.linalg.eigh(moments.covariance)
+    large = variance > _NEGLIGIBLE * variance[-1]
+    deviations = PerJoint(*np.split(directions[:, large] * np.sqrt(variance[large]), 2))
+    torque = torque_map(moments)
+
+    def sets(joint: str, angle: FloatArray) -> FloatArray:
+        return np.column_stack([torque.at_source(joint, angle), fourier(angle) @ deviations[joint]])
+
+    return WorkTable(sets, moments.measured_on)
+
+
 @dataclass(frozen=True)
 class Cycles:
-    """One turn of each design; NaN for those that do not turn (geometry.turning).
+    """One turn of each design; NaN for those that do not turn.
 
-    turns: shape (designs,). reach: shape (designs,), m, what the leg has left before it is stretched or folded flat;
-    negative if it lacks.
+    turns: shape (designs,). obstacles: why one does not, see geometry.obstacles. reach: shape (designs,), m, what the
+    leg has left before it is stretched or folded flat; negative if it lacks.
     low, high, travel: by joint, shape (designs,), rad: smallest and largest angle, and the way made in a turn.
     reversals: by joint, shape (designs,), how often it turns round. work: shape (designs, sets), J a turn and leg.
+    outside_share: shape (designs,), of the turn in which a joint is beyond the moments' range. outside_sd: shape
+    (designs,), J, of the work, by not knowing the moments there (extrapolation.extrapolation). never_inside: by joint,
+    shape (designs,), whether it is beyond all the turn, so that the work says nothing.
     """
 
     turns: BoolArray
+    obstacles: dict[str, BoolArray]
     reach: FloatArray
     low: PerJoint[FloatArray]
     high: PerJoint[FloatArray]
     travel: PerJoint[FloatArray]
     reversals: PerJoint[IntArray]
     work: FloatArray
+    outside_share: FloatArray
+    outside_sd: FloatArray
+    never_inside: PerJoint[BoolArray]
 
 
 def cycles(design: Design, table: WorkTable, points: int = TURN_POINTS) -> Cycles:
@@ -95,28 +130,39 @@ def cycles(design: Design, table: WorkTable, points: int = TURN_POINTS) -> Cycle
     crank_angle = np.linspace(0, 2 * np.pi, points, endpoint=False)
     size = max(1, BLOCK_POSITIONS // points)
     parts = [
-        _turn(take(design, slice(start, start + size)), crank_angle) for start in range(0, batch_size(design), size)
+        _turn(take(design, slice(start, start + size)), crank_angle, table.measured_on)
+        for start in range(0, batch_size(design), size)
     ]
-    reach, swing = (np.concatenate([part[i] for part in parts]) for i in (0, 1))
-    turns = turning(design, reach, swing)
+    reach, swing, share, *never = (np.concatenate(each) for each in list(zip(*parts, strict=True))[:-1])
+    hindered = obstacles(design, reach, swing)
+    turns = ~np.logical_or.reduce([*hindered.values()])
     first_rows, work = size * np.arange(len(parts)), np.zeros((len(reach), table.sets))
-    work[~turns] = np.nan
+    work[~turns] = share[~turns] = np.nan
+    reference, variance = table.measured_on, np.zeros(len(reach))
 
     def of_joint(joint: str) -> tuple[FloatArray, FloatArray, FloatArray, IntArray]:
         """Smallest and largest angle, travel and reversals of a joint; its work is added to the others'."""
-        found = [part[2][joint] for part in parts]
+        found = [part[-1][joint] for part in parts]
         rows = np.concatenate([each[0] + first for each, first in zip(found, first_rows, strict=True)])
         angle, sign = (np.concatenate([each[i] for each in found]) for i in (1, 2))
         low, high = np.full((2, len(reach)), np.nan)
         np.fmin.at(low, rows, angle)
         np.fmax.at(high, rows, angle)
-        low[~turns] = high[~turns] = np.nan
-        np.add.at(work, rows, sign[:, None] * table.area(joint, angle))
         travel = np.where(turns, 2 * np.bincount(rows, sign * angle, len(reach)), np.nan)
+        middle = (low + high) / 2  # the whole path by whole turns, so that it does not jump where it is far outside
+        angle = angle + (reference.around(joint, middle) - middle)[rows]
+        present, first = np.unique(rows, return_index=True)
+        area = table.area(joint, np.clip(angle, *reference.ranges[joint]))
+        work[present] += np.add.reduceat(sign[:, None] * area, first) if present.size else 0
+        for excess in (reference.ranges[joint][0] - angle, angle - reference.ranges[joint][1]):
+            drift = np.bincount(rows, sign * drift_area(excess, reference.half_range(joint)), len(reach))
+            variance[:] += 2 * (table.spread[joint] * drift) ** 2  # in extension and in flexion, independently
+        low[~turns] = high[~turns] = np.nan
         return low, high, travel, np.bincount(rows, minlength=len(reach))
 
     low, high, travel, count = (PerJoint(*each) for each in zip(*PerJoint.of(of_joint), strict=True))
-    return Cycles(turns, reach, low, high, travel, count, work)
+    outside_sd = np.where(turns, np.sqrt(variance), np.nan)
+    return Cycles(turns, hindered, reach, low, high, travel, count, work, share, outside_sd, PerJoint(*never))
 
 
 def joint_speeds(design: Design, table: WorkTable) -> PerJoint[float]:
@@ -129,16 +175,20 @@ def joint_speeds(design: Design, table: WorkTable) -> PerJoint[float]:
 Reversals: TypeAlias = tuple[IntArray, FloatArray, FloatArray]
 
 
-def _turn(design: Design, crank_angle: FloatArray) -> tuple[FloatArray, FloatArray, PerJoint[Reversals]]:
-    """Reach of the leg, swing of the thigh, reversals of knee and hip of one block."""
+def _turn(design: Design, crank_angle: FloatArray, reference: ReferenceTricycle) -> tuple[Any, ...]:
+    """Of one block: reach of the leg, swing of the thigh, share outside the moments' range, whether the knee and the
+    hip never enter it, reversals by joint.
+    """
     points = positions(design, crank_angle)
     pedal = np.atleast_2d(np.abs(points["pedal"]))
     thigh, shank = (np.ravel(length) for length in (design.rider.thigh, design.knee_to_pedal))
     reach = np.minimum(thigh + shank - pedal.max(axis=1), pedal.min(axis=1) - np.abs(thigh - shank))
     angles = joint_angles(design, points).map(np.atleast_2d)
+    outside = beyond(reference, angles)
     for angle in angles:
         angle[~(reach > 0)] = 0.0  # one that does not close stays at rest
-    return reach, np.ptp(angles.hip, axis=1), angles.map(reversals)
+    swing = np.ptp(angles.hip, axis=1)
+    return reach, swing, outside_share(outside), *never_inside(outside), angles.map(reversals)
 
 
 def reversals(angle: FloatArray) -> Reversals:

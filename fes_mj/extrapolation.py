@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from fes_mj.arrays import FloatArray
+from fes_mj.arrays import BoolArray, FloatArray
 from fes_mj.design import Design
 from fes_mj.errors import AssemblyError, InputError
 from fes_mj.geometry import SCAN, require_assembly
@@ -71,6 +71,46 @@ def extrapolation(
     )
 
 
+def beyond(reference: ReferenceTricycle, angle: PerJoint[FloatArray]) -> PerJoint[FloatArray]:
+    """How far joint angles over a turn (rad, last axis) lie beyond what counts as the moments' range; negative inside.
+
+    A path is taken by whole turns to where its middle is nearest to the range's.
+    """
+
+    def of_joint(joint: str) -> FloatArray:
+        path = angle[joint]
+        middle = (path.max(axis=-1, keepdims=True) + path.min(axis=-1, keepdims=True)) / 2
+        to_range = reference.around(joint, middle) - middle - sum(reference.ranges[joint]) / 2
+        return np.asarray(np.abs(path + to_range) - (reference.half_range(joint) + NO_MORE))
+
+    return PerJoint.of(of_joint)
+
+
+def outside_share(beyond: PerJoint[FloatArray]) -> FloatArray:
+    """Share of the turn in which any joint is beyond the range, which it passes on straight lines between the angles.
+
+    beyond: as `beyond` gives it over uniform crank angles of one turn, shape (designs, angles). Shape (designs,).
+    """
+    farther = np.maximum(*beyond)
+    share, rows = np.zeros(len(farther)), np.flatnonzero(farther.max(axis=1) > 0)
+    here = farther[rows]
+    there = np.roll(here, -1, axis=1)
+    high, low = np.maximum(here, there), np.minimum(here, there)
+    share[rows] = np.clip(high / np.maximum(high - low, np.finfo(float).tiny), 0, 1).mean(axis=1)
+    return share
+
+
+def never_inside(beyond: PerJoint[FloatArray]) -> PerJoint[BoolArray]:
+    """Whether each joint is beyond the range at every one of the angles (last axis)."""
+    return beyond.map(lambda each: each.min(axis=-1) > 0)
+
+
+def drift_area(excess: FloatArray, half_range: float) -> FloatArray:
+    """Integral over the angle of the drift (see extrapolation), rad, from an end of the range to `excess` beyond it."""
+    part = np.clip(excess, 0, half_range)
+    return np.asarray(part**2 / (2 * half_range) + np.maximum(excess - half_range, 0))
+
+
 def require_motion(design: Design, reference: ReferenceTricycle) -> None:
     """Raise InputError, with the likely cause, unless the linkage turns and each joint enters the moments' range.
 
@@ -81,8 +121,10 @@ def require_motion(design: Design, reference: ReferenceTricycle) -> None:
     except AssemblyError as error:
         raise AssemblyError(f"{error}{_likely_cause(design, reference)}") from None
     never = []
-    for joint, angle in _angles(design).items():
-        if np.abs(reference.excess(joint, angle)).min() > NO_MORE:
+    angles = _angles(design)
+    outside = never_inside(beyond(reference, angles))
+    for joint, angle in angles.items():
+        if outside[joint]:
             own, known = (
                 f"{low:.1f} to {high:.1f} deg" for low, high in (_ends(angle), np.degrees(reference.ranges[joint]))
             )

@@ -114,26 +114,40 @@ def _reach(design: Design, links: tuple[str, str]) -> tuple[FloatArray, FloatArr
     return np.abs(first - second), first + second
 
 
-def turning(design: Design, reach: FloatArray, swing: FloatArray) -> BoolArray:
-    """Which designs of a batch turn right round, as require_assembly decides; shape (designs,).
+def obstacles(design: Design, reach: FloatArray, swing: FloatArray) -> dict[str, BoolArray]:
+    """Why designs of a batch do not turn right round, as require_assembly decides: reason -> which, shape (designs,).
 
-    reach: clearance of the leg at SCAN, m, made exact where it is small. swing: of the thigh, rad.
+    The first reason that holds counts. reach: clearance of the leg at SCAN, m, made exact where it is small. swing: of
+    the thigh, rad.
     """
-    turns = (reach > 0) & (swing < LARGEST_SWING)
+    found = {}
     if "coupler" in design.linkage.architecture.bodies:
-        turns = turns & (_rocker_clearance(design).margin >= LEAST_CLEARANCE)
+        found = _shortfalls(("rocker", "coupler"), _rocker_clearance(design).margin)
+    turns = (reach > 0) & (swing < LARGEST_SWING)
+    for which in found.values():
+        turns = turns & ~which
     doubtful = np.flatnonzero(turns & (reach < _NEAR))
     if doubtful.size:
         reach[doubtful] = clearances(take(design, doubtful))[-1].margin
-    return np.asarray(turns & (reach >= LEAST_CLEARANCE))
+    found |= _shortfalls(("thigh", "shank"), reach)
+    found[f"the thigh swings through {np.degrees(LARGEST_SWING):.0f} deg or more"] = swing >= LARGEST_SWING
+    return {reason: np.broadcast_to(which, reach.shape) for reason, which in found.items()}
+
+
+def _shortfalls(links: tuple[str, str], margin: FloatArray) -> dict[str, BoolArray]:
+    """Why a dyad with such a clearance (m, shape (designs,)) cannot turn: reason -> which designs."""
+    pair = " and ".join(links)
+    return {
+        f"{pair} cannot close": ~(margin >= 0),
+        f"{pair} within {1e3 * LEAST_CLEARANCE:g} mm of a dead centre": (margin >= 0) & (margin < LEAST_CLEARANCE),
+    }
 
 
 def require_assembly(design: Design) -> None:
     """Raise AssemblyError, naming links, crank angle and margin, unless the linkage turns right round."""
     points = positions(design, SCAN)
     for links, margin, span, angle in clearances(design, points):
-        if margin[0] < LEAST_CLEARANCE:
-            first, second = links
+        for reason in (reason for reason, holds in _shortfalls(links, margin).items() if holds[0]):
             start, end, _ = (name.replace("_", " ") for name in DYADS[links])
             shortest, longest = (float(length[0]) for length in _reach(design, links))
             where = f"at crank angle {np.degrees(angle[0]):.1f} deg"
@@ -142,14 +156,11 @@ def require_assembly(design: Design) -> None:
                 f"{longest:.4f} m"
             )
             if margin[0] < 0:
-                raise AssemblyError(
-                    f"{design.name}: {first} and {second} cannot close {where}: {apart}; {-1e3 * margin[0]:.4g} mm lack"
-                )
+                raise AssemblyError(f"{design.name}: {reason} {where}: {apart}; {-1e3 * margin[0]:.4g} mm lack")
             state = "in line" if span[0] > (shortest + longest) / 2 else "folded flat"
             raise AssemblyError(
-                f"{design.name}: {first} and {second} are all but {state} {where}: {apart}; "
-                f"{1e3 * margin[0]:.2g} mm from a dead centre, where the motion is not determined; "
-                f"{1e3 * LEAST_CLEARANCE:g} mm are needed"
+                f"{design.name}: {reason} {where}: {apart}; {1e3 * margin[0]:.2g} mm from being {state}, where the "
+                f"motion is not determined; {1e3 * LEAST_CLEARANCE:g} mm are needed"
             )
     swing = float(np.ptp(joint_angles(design, points).hip))
     if swing >= LARGEST_SWING:

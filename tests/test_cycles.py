@@ -7,9 +7,10 @@ import pytest
 
 import fes_mj
 from fes_mj import kinematics
-from fes_mj.cycles import WorkTable, cycles, joint_speeds, reversals, take
+from fes_mj.cycles import WorkTable, cycles, joint_speeds, reversals, take, uncertain_table
+from fes_mj.errors import AssemblyError, InputError
 from fes_mj.geometry import require_assembly
-from fes_mj.statics import quasi_static
+from fes_mj.statics import QuasiStatic, quasi_static
 from fes_mj.variables import lengths, replaced, with_lengths
 
 FINE = 36_000
@@ -47,6 +48,61 @@ def test_work_of_moments_nobody_fitted(design: fes_mj.Design, smooth_moments: fe
     # relative to what flows in and out, which the net work is a small difference of
     flow = np.abs(exact.crank_moment).mean() * 2 * np.pi
     assert abs(error) < 1e-4 * flow
+
+
+def solved(design: fes_mj.Design, moments: fes_mj.JointMoments) -> QuasiStatic | InputError:
+    """The result of the quasi-static solver, or why there is none."""
+    try:
+        return quasi_static(design, moments)
+    except InputError as error:
+        return error
+
+
+@pytest.mark.parametrize("name", ["trt", "r1", "d2"])
+def test_random_designs_in_a_batch_fare_as_alone(name: str, moments: fes_mj.JointMoments) -> None:
+    """What is refused and why, mean power, its standard deviation and the share outside the moments' range."""
+    random, design, count = np.random.default_rng(1), fes_mj.load_design(name), 100
+    ranges = {"thigh": (0.40, 0.60), "shank": (0.40, 0.60), "seat_angle": (0, 60)}
+    values = {key: random.uniform(*ends, (count, 1)) for key, ends in ranges.items()}
+    together, fates = cycles(replaced(design, values), uncertain_table(moments)), set()
+    for row in range(count):
+        alone = replaced(design, {key: float(column[row, 0]) for key, column in values.items()})
+        hindered = [reason for reason, which in together.obstacles.items() if which[row]]
+        outside = [joint for joint, which in together.never_inside.items() if which[row]]
+        assert bool(hindered) != together.turns[row]
+        found = solved(alone, moments)
+        if isinstance(found, AssemblyError):
+            assert f"{design.name}: {hindered[0].partition(' through')[0]}" in str(found)
+            fates.add("cannot turn")
+        elif isinstance(found, InputError):
+            assert all(f"the {joint} moves from" in str(found) for joint in outside)
+            assert outside
+            fates.add("never inside")
+        else:
+            assert not hindered + outside
+            per_work = found.cadence / (2 * np.pi)
+            power, *deviations = together.work[row] * per_work
+            assert power == pytest.approx(found.power_mean, rel=2e-4, abs=2e-3)
+            assert together.outside_share[row] == pytest.approx(found.extrapolation.share, abs=4e-3)
+            assert together.outside_sd[row] * per_work == pytest.approx(found.extrapolation.sd, rel=2e-3, abs=5e-3)
+            deviation = np.hypot(np.linalg.norm(deviations), together.outside_sd[row] * per_work)
+            assert deviation == pytest.approx(found.power_sd, rel=2e-3)
+            fates.add("outside" if found.extrapolation.share else "inside")
+    assert fates >= {"cannot turn", "never inside", "outside"}
+
+
+@pytest.mark.parametrize("name", ["trt", "d1", "d2"])
+def test_a_seat_angle_a_turn_away_is_the_same_seat(name: str) -> None:
+    design, table = fes_mj.load_design(name), uncertain_table(fes_mj.load_moments())
+    seat = design.linkage.seat_angle - np.radians(8)
+    one, other = (
+        cycles(replace(design, linkage=replace(design.linkage, seat_angle=angle)), table)
+        for angle in (seat, seat - 2 * np.pi)
+    )
+    assert one.outside_share[0] > 0
+    assert one.outside_share == pytest.approx(other.outside_share, abs=1e-9)
+    assert one.outside_sd == pytest.approx(other.outside_sd, rel=1e-9)
+    assert one.work == pytest.approx(other.work, abs=1e-9)
 
 
 def test_travel_is_the_integral_of_the_absolute_rate(design: fes_mj.Design, moments: fes_mj.JointMoments) -> None:

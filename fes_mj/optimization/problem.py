@@ -9,14 +9,13 @@ import numpy as np
 
 from fes_mj.arrays import BoolArray, FloatArray
 from fes_mj.batch import take
-from fes_mj.cycles import TURN_POINTS, Cycles, WorkTable, cycles, joint_speeds
+from fes_mj.cycles import TURN_POINTS, Cycles, WorkTable, cycles, joint_speeds, uncertain_table
 from fes_mj.design import Design
 from fes_mj.design_file import load_design
 from fes_mj.errors import InputError
 from fes_mj.geometry import grashof_margin
 from fes_mj.joints import JOINTS, PerJoint
 from fes_mj.moments import JointMoments
-from fes_mj.optimization.confidence import uncertain_table
 from fes_mj.optimization.problem_file import DEFAULT, VARIED, Limits, depth_inside, load_limits
 from fes_mj.variables import component, replaced
 
@@ -75,7 +74,7 @@ class Problem:
 
     template: kind, rider, seat and coupler angle of all designs. table: the sets of moments; the first is the one whose
     power counts. joint_speed: largest mean absolute speed of each joint, deg/s. caution: with moments as of
-    evidence.uncertain_table, how many standard deviations of the gain over `baseline` (power of a design to beat,
+    cycles.uncertain_table, how many standard deviations of the gain over `baseline` (power of a design to beat,
     shape (sets,)) are taken off it.
     """
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import fes_mj
-from fes_mj.cycles import cycles
+from fes_mj.cycles import cycles, uncertain_table
 from fes_mj.errors import InputError
-from fes_mj.optimization.confidence import gain, uncertain_table
+from fes_mj.optimization.confidence import gain
 from fes_mj.optimization.optimize import optimize
 from fes_mj.optimization.problem import Problem
 from fes_mj.statics import difference_sd
