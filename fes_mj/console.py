@@ -29,6 +29,7 @@ def conclude(ok: bool, result: str, more: str) -> None:
 def print_table(title: str, columns: Sequence[str], rows: Iterable[Sequence[str | Text]]) -> None:
     """Print a title and a table, first column left, the others right aligned."""
     from rich.box import SIMPLE_HEAD
+    from rich.measure import measure_renderables
     from rich.table import Table
 
     say(title, "bold")
@@ -37,7 +38,9 @@ def print_table(title: str, columns: Sequence[str], rows: Iterable[Sequence[str 
         table.add_column(column, justify="right" if number else "left")
     for row in rows:
         table.add_row(*(printable(cell) if isinstance(cell, str) else cell for cell in row))
-    output.print(table)
+    # a narrow screen may wrap lines, but no digit is left out
+    table.width = measure_renderables(output, output.options.update(max_width=1000), [table]).maximum
+    output.print(table, crop=False)
 
 
 @contextmanager

@@ -7,6 +7,7 @@ the loops it draws in the moment-angle plane: a sum over its reversals, where no
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -42,13 +43,12 @@ class WorkTable:
     def __init__(self, moments: Moments, measured_on: ReferenceTricycle) -> None:
         """moments: called with a joint and crank angles (m,) from top dead centre, rad; returns N m, (m, sets)."""
         self.measured_on, grid = measured_on, np.linspace(-np.pi, 2 * np.pi, _TABLE_STEPS + 1)
-        rate = measured_on.joint_rates(grid)
+        rate, values = measured_on.joint_rates(grid), PerJoint.of(lambda joint: moments(joint, grid))
         self._work = PerJoint.of(
-            lambda joint: cumulative_trapezoid(moments(joint, grid) * rate[joint][:, None], grid, axis=0, initial=0)
+            lambda joint: cumulative_trapezoid(values[joint] * rate[joint][:, None], grid, axis=0, initial=0)
         )
-        once = grid[grid >= 0][:-1]
         # N m, by which the first set of moments varies inside the range: what is not known of it outside
-        self.spread = PerJoint.of(lambda joint: float(moments(joint, once)[:, 0].std()))
+        self.spread = values.map(lambda each: float(each[grid >= 0][:-1, 0].std()))
 
     @classmethod
     def of(cls, *moments: JointMoments) -> "WorkTable":
@@ -75,6 +75,7 @@ class WorkTable:
         return np.asarray(work[index] + (position - index)[:, None] * (work[index + 1] - work[index]))
 
 
+@lru_cache(maxsize=32)
 def uncertain_table(moments: JointMoments) -> WorkTable:
     """Table whose first set of moments is the given one, the others its deviations along independent directions.
 
@@ -183,10 +184,10 @@ def _turn(design: Design, crank_angle: FloatArray, reference: ReferenceTricycle)
     pedal = np.atleast_2d(np.abs(points["pedal"]))
     thigh, shank = (np.ravel(length) for length in (design.rider.thigh, design.knee_to_pedal))
     reach = np.minimum(thigh + shank - pedal.max(axis=1), pedal.min(axis=1) - np.abs(thigh - shank))
-    angles = joint_angles(design, points).map(np.atleast_2d)
+    reach = np.broadcast_to(reach, batch_size(design))  # where seat, mass or gear ratio are all that varies
+    closes = (reach > 0)[:, None]
+    angles = joint_angles(design, points).map(lambda angle: np.where(closes, angle, 0.0))  # or it stays at rest
     outside = beyond(reference, angles)
-    for angle in angles:
-        angle[~(reach > 0)] = 0.0  # one that does not close stays at rest
     swing = np.ptp(angles.hip, axis=1)
     return reach, swing, outside_share(outside), *never_inside(outside), angles.map(reversals)
 

@@ -15,6 +15,7 @@ from typing import Any, NoReturn
 
 from fes_mj.errors import InputError
 
+TEMPORARY = ".fes_mj-"  # how the names of temporary files begin
 LARGEST_INPUT = 64 * 2**20  # bytes; a day of measured moments is smaller
 MARKED = 4096  # bytes: the beginning of a file of ours, which can hold its name twice and escaped
 
@@ -50,7 +51,11 @@ class Section:
 
     def refuse(self, key: str, value: object, allowed: str) -> NoReturn:
         """Raise InputError for a value that is not allowed."""
-        raise InputError(f"{self.path}: {self.label(key)} is {value!r}; it must be {allowed}")
+        try:
+            shown = repr(value)
+        except ValueError:  # Python writes no integer of thousands of digits, as hexadecimals can be
+            shown = "a number of thousands of digits"
+        raise InputError(f"{self.path}: {self.label(key)} is {shown}; it must be {allowed}")
 
     def only(self, allowed: Iterable[str]) -> None:
         """Refuse keys that nobody reads."""
@@ -250,7 +255,7 @@ def _named(path: Path) -> Iterator[None]:
 @contextmanager
 def _beside(path: Path) -> Iterator[Path]:
     """An empty temporary file in the folder of `path`, with its suffix; gone afterwards, whenever a signal comes."""
-    temporary = path.with_name(f".fes_mj-{secrets.token_hex(8)}{path.suffix}")
+    temporary = path.with_name(f"{TEMPORARY}{secrets.token_hex(8)}{path.suffix}")
     with _named(path):
         try:
             temporary.touch(exist_ok=False)
@@ -268,6 +273,13 @@ def replacing(path: Path) -> Iterator[Path]:
     with _beside(path) as temporary:
         yield temporary
         temporary.replace(path)
+
+
+def remove_leftovers(folder: Path) -> None:
+    """Remove the temporary files that killed runs left in a folder which is this run's alone."""
+    for path in folder.glob(f"{TEMPORARY}*"):
+        if path.is_file():
+            path.unlink(missing_ok=True)
 
 
 def write_text(path: Path, text: str) -> None:

@@ -11,7 +11,7 @@ from fes_mj.cycles import WorkTable, cycles, joint_speeds, reversals, take, unce
 from fes_mj.errors import AssemblyError, InputError
 from fes_mj.geometry import require_assembly
 from fes_mj.statics import QuasiStatic, quasi_static
-from fes_mj.variables import lengths, replaced, with_lengths
+from fes_mj.variables import component, lengths, replaced, with_lengths
 
 FINE = 36_000
 LEGS = 0.03  # m
@@ -48,6 +48,19 @@ def test_work_of_moments_nobody_fitted(design: fes_mj.Design, smooth_moments: fe
     # relative to what flows in and out, which the net work is a small difference of
     flow = np.abs(exact.crank_moment).mean() * 2 * np.pi
     assert abs(error) < 1e-4 * flow
+
+
+@pytest.mark.parametrize("name", ["seat_angle", "gear_ratio", "mass", "R6", "R1x"])
+@pytest.mark.parametrize("count", [3, 150])
+def test_any_single_variable_makes_a_batch(name: str, count: int) -> None:
+    design, table = fes_mj.load_design("d1"), uncertain_table(fes_mj.load_moments())
+    values = component(design, name) + np.linspace(0, 0.01, count)
+    together = cycles(replaced(design, {name: values[:, None]}), table)
+    for row in (0, count - 1):
+        alone = cycles(replaced(design, {name: float(values[row])}), table)
+        assert together.work[row] == pytest.approx(alone.work[0], rel=1e-12)
+        assert together.outside_share[row] == pytest.approx(alone.outside_share[0])
+    assert together.turns.shape == together.reach.shape == together.outside_sd.shape == (count,)
 
 
 def solved(design: fes_mj.Design, moments: fes_mj.JointMoments) -> QuasiStatic | InputError:

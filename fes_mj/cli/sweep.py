@@ -3,16 +3,23 @@
 import os
 import sys
 import time
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
+from urllib.parse import urlsplit
 
 from cyclopts import Parameter
 
 from fes_mj.cli.options import PrintOptions
 from fes_mj.console import print_table, progress_bar
-from fes_mj.files import json_text, require_folder
+from fes_mj.errors import InputError, require_extra
+from fes_mj.files import json_text, make_folder, require_writable
+
+if TYPE_CHECKING:
+    from fes_mj.sweep.study import Study
 
 _DEFAULTS = PrintOptions()
+MOST_PLOTTED = 10**6  # points
 
 
 def sweep(
@@ -22,6 +29,8 @@ def sweep(
     out: Annotated[Path, Parameter(name=["--out", "-o"])],
     jobs: int | None = None,
     cluster: str | None = None,
+    csv: Path | None = None,
+    plot: Path | None = None,
     options: PrintOptions = _DEFAULTS,
 ) -> int:
     """Evaluate every point of a study; started again with the same folder, it does only what is missing.
@@ -36,33 +45,78 @@ def sweep(
         Processes (default: one a core).
     cluster
         Dask scheduler, tcp://host:port, to send the chunks to.
+    csv
+        Write all rows as one CSV file too.
+    plot
+        Where one or two numbers vary, draw the mean crank power over them: a picture (.png).
     """
     from fes_mj.parallel import Workers
     from fes_mj.sweep.study import load_study
     from fes_mj.sweep.sweep import Sweep
 
-    require_folder(out if out.exists() else out.parent, "the results")
-    sweep = Sweep(load_study(study), out)
     workers = Workers(jobs if jobs is not None else os.cpu_count() or 1, cluster)
+    if cluster is not None:
+        _require_address(cluster)
+    sweep = Sweep(load_study(study), out)
+    if plot:
+        _require_plottable(sweep.study, study)
+    make_folder(out, "the results")
+    for path, what, suffix in ((csv, "the rows", ".csv"), (plot, "the plot", ".png")):
+        if path:
+            require_writable(path, what, suffix, sweep.study.files)
     sweep.claim()
-    total = sweep.study.points
-    before = sum(min(sweep.study.chunk, total - chunk * sweep.study.chunk) for chunk in sweep.finished())
+    finished = sweep.finished()
+    before = sum(len(sweep.study.numbers(chunk)) for chunk in finished)
     start = time.perf_counter()
     # each process compiles the loop of a dynamic study, which takes seconds
     first = ", its loop is compiled first" if sweep.study.analysis == "dynamic" else ""
-    with progress_bar(f"{study.stem}, points{first}", total, options.silent, before) as advance:
-        sweep.run(workers, advance)
+    with progress_bar(f"{study.stem}, points{first}", sweep.study.points, options.silent, before) as advance:
+        sweep.run(workers, advance, finished)
     seconds = time.perf_counter() - start
+    if csv:
+        sweep.write_csv(csv)
+    if plot:
+        from fes_mj.sweep.plot import write_plot
+
+        write_plot(sweep, plot)
     summary = sweep.summary() | {"found_finished": before, "seconds": seconds}
     summary["points_per_second"] = (summary["points"] - before) / seconds
     if options.json:
         sys.stdout.write(json_text(summary))
     elif not options.quiet:
-        _print(summary, study.stem)
+        _print(summary, study.stem, sweep.study)
     return 0
 
 
-def _print(summary: dict[str, Any], name: str) -> None:
+def _require_address(cluster: str) -> None:
+    """Raise InputError for what is no tcp://host:port: Dask takes it for something else, and may wait for it."""
+    try:
+        parts = urlsplit(cluster)
+        host = (parts.hostname or "").encode("idna")
+        sound = bool(host) and bool(parts.port) and cluster == f"tcp://{parts.netloc}" and "@" not in cluster
+    except ValueError:
+        sound = False
+    if not sound:
+        raise InputError(
+            f"--cluster {cluster}: no Dask scheduler has such an address; "
+            "give the tcp://host:port that `dask scheduler` prints"
+        )
+
+
+def _require_plottable(study: "Study", path: Path) -> None:
+    """Raise InputError unless --plot can show the study, MissingPartError without matplotlib."""
+    require_extra("report", "matplotlib")
+    numbers, names = study.varied_numbers, [axis for axis in study.varied if axis not in study.varied_numbers]
+    if len(numbers) not in (1, 2) or (len(numbers) == 2 and names):
+        raise InputError(
+            f"--plot shows one number that varies, for any designs and moments, or two for one design and moments; in "
+            f"{path} {', '.join(study.varied) or 'none'} varies; leave out --plot, or vary as many"
+        )
+    if study.points > MOST_PLOTTED:
+        raise InputError(f"--plot: {path} has {study.points:,} points; at most {MOST_PLOTTED:,} are drawn")
+
+
+def _print(summary: dict[str, Any], name: str, study: "Study") -> None:
     cells = [
         ("points", f"{summary['points']:,}"),
         ("already finished", f"{summary['found_finished']:,}"),
@@ -70,9 +124,28 @@ def _print(summary: dict[str, Any], name: str) -> None:
         ("points a second", f"{summary['points_per_second']:,.0f}"),
     ]
     print_table(f"{name}: {summary['folder']}", ("", "value"), cells)
-    if summary["best"]:
-        best = {
-            key.replace("_", " "): f"{value:.6g}" if isinstance(value, float) else str(value)
-            for key, value in summary["best"].items()
-        }
-        print_table("Point with the most mean crank power", ("", "value"), [*best.items()])
+    if summary["top"]:
+        _print_top(summary["top"], study)
+
+
+def _print_top(rows: Sequence[dict[str, Any]], study: "Study") -> None:
+    """The best points, with what varies among all."""
+    from fes_mj.sweep.study import label
+
+    columns = {"point": "point"} | {axis: label(axis) for axis in study.varied}
+    columns |= {"power_mean_W": "power, W", "power_sd_W": "+-, W", "simulated_power_mean_W": "simulated, W"}
+    columns |= {"extrapolated_share": "extrapolated, %"}
+    shown = {name: heading for name, heading in columns.items() if any(row.get(name) is not None for row in rows)}
+    print_table(
+        "Points with the most mean crank power",
+        [*shown.values()],
+        [[_cell(name, row[name]) for name in shown] for row in rows],
+    )
+
+
+def _cell(name: str, value: Any) -> str:
+    if not isinstance(value, float):
+        return "" if value is None else str(value)
+    if name == "extrapolated_share":
+        return f"{100 * value:.1f}"
+    return f"{value:.2f}" if name.endswith("_W") else f"{value:.4g}"

@@ -13,13 +13,15 @@ from fes_mj.design import Design
 from fes_mj.design_file import load_design
 from fes_mj.errors import InputError
 from fes_mj.files import Section, is_number, read_toml
-from fes_mj.moments import JointMoments, load_moments
+from fes_mj.moments import GROUPS, JointMoments, load_moments
 from fes_mj.time_step import LONGEST_TIMESTEP
 from fes_mj.variables import COMPONENTS
 
 ANALYSES = ("static", "dynamic")
 # A chunk is a task and a file: about a second of static, a minute of dynamic work.
 DEFAULT_CHUNK = {"static": 20_000, "dynamic": 1000}
+MOST_CHUNK = 10**5  # points, which a process holds in memory with half a gigabyte of what leads to them
+MOST_CHUNKS = 10**6  # files of one folder
 MOST_POINTS = 10**9
 MOST_VALUES = 10**6  # of one axis, or of the sample: they are held in memory
 _TABLES = {
@@ -27,6 +29,7 @@ _TABLES = {
     "grid": ("design", "moments", *COMPONENTS),
     "sample": ("size", "seed", *COMPONENTS),
 }
+NAMES = ("design", "moments")  # axes whose values are names
 _EXAMPLES = {"design": '"d1", "mine.toml"', "moments": '"p1p2", "mine.csv"'}
 
 
@@ -35,9 +38,10 @@ class Study:
     """Every combination of the grid's values with every point of the sample.
 
     Point i takes sample point i % size; the grid's last axis is the next to turn. grid: by axis, values as in the file.
-    sample: by variable, shape (size,).
+    sample: by variable, shape (size,). files: what was read, the study file first.
     """
 
+    files: list[Path]
     analysis: str
     chunk: int
     timestep: float | None
@@ -55,15 +59,35 @@ class Study:
     def chunks(self) -> int:
         return -(-self.points // self.chunk)
 
+    @property
+    def varied(self) -> list[str]:
+        """Axes with more than one value."""
+        return [axis for axis, values in (self.grid | self.sample).items() if len(values) > 1]
+
+    @property
+    def varied_numbers(self) -> list[str]:
+        """Those of them that are no names."""
+        return [axis for axis in self.varied if axis not in NAMES]
+
+    def numbers(self, chunk: int) -> NDArray[np.int64]:
+        """Numbers of the points of a chunk, shape (points of the chunk,)."""
+        return np.arange(chunk * self.chunk, min((chunk + 1) * self.chunk, self.points))
+
     def rows(self, chunk: int) -> dict[str, NDArray[Any]]:
         """Number ("point") and value of every axis for the points of a chunk, shape (points of the chunk,)."""
-        number = np.arange(chunk * self.chunk, min((chunk + 1) * self.chunk, self.points))
+        number = self.numbers(chunk)
         rows: dict[str, NDArray[Any]] = {"point": number}
         rest = number // self.size
         for axis, values in reversed(self.grid.items()):
             rest, index = np.divmod(rest, len(values))
             rows[axis] = np.array(values)[index]
         return rows | {name: values[number % self.size] for name, values in self.sample.items()}
+
+
+def label(axis: str) -> str:
+    """An axis with its unit, as in a heading."""
+    unit = COMPONENTS[axis].variable.unit if axis in COMPONENTS else ""
+    return ", ".join(part for part in (axis.removesuffix("_rpm"), unit) if part)
 
 
 def load_study(path: Path) -> Study:
@@ -73,13 +97,16 @@ def load_study(path: Path) -> Study:
     settings, grid, sample = (content.section(name) for name in _TABLES)
     for section in (settings, grid, sample):
         section.only(_TABLES[section.name])
-    for axis, example in _EXAMPLES.items():
-        grid.require([axis], f"give a list, as in {axis} = [{example}]")
-    analysis, size = settings.choice("analysis", ANALYSES, "static"), sample.whole("size", 1)
+    grid.require(["design"], f"give a list, as in design = [{_EXAMPLES['design']}]")
+    grid.content.setdefault("moments", [GROUPS[0]])
+    analysis, size = settings.choice("analysis", ANALYSES, "static"), _few(sample, "size", sample.whole("size", 1))
+    chunk = _chunk(settings, analysis, size * math.prod(_count(grid, axis) for axis in grid.content))
     axes = {axis: _axis(grid, axis) for axis in grid.content}
+    named = [_beside(path, name) for axis in NAMES for name in axes[axis]]
     study = Study(
+        [path, *(Path(name) for name in named if Path(name).suffix)],
         analysis,
-        settings.whole("chunk", DEFAULT_CHUNK[analysis]),
+        chunk,
         _timestep(settings, analysis),
         axes,
         _sampled(sample, size),
@@ -91,12 +118,25 @@ def load_study(path: Path) -> Study:
     return study
 
 
+def _chunk(settings: Section, analysis: str, points: int) -> int:
+    """Points of a chunk. Refuses chunks that no memory holds, and more points or files than anybody waits for."""
+    chunk = settings.whole("chunk", DEFAULT_CHUNK[analysis])
+    if chunk > MOST_CHUNK:
+        settings.refuse("chunk", chunk, f"at most {MOST_CHUNK:,} points")
+    if points > MOST_POINTS:
+        raise InputError(
+            f"{settings.path}: {points:,} points; a study has at most {MOST_POINTS:,}: take fewer values or "
+            "a smaller sample"
+        )
+    if points > MOST_CHUNKS * chunk:
+        settings.refuse("chunk", chunk, f"at least {-(-points // MOST_CHUNKS):,} for {points:,} points")
+    return chunk
+
+
 def _check(path: Path, study: Study) -> None:
     for name in study.grid:
         if name in study.sample:
             raise InputError(f"{path}: {name} is both in grid and in sample; keep it in one of them")
-    if study.points > MOST_POINTS:
-        raise InputError(f"{path}: {study.points} points; a study has at most {MOST_POINTS}")
     for name in {*study.grid, *study.sample} & COMPONENTS.keys():
         for label, design in study.designs.items():
             if design.linkage.kind not in COMPONENTS[name].variable.kinds:
@@ -117,21 +157,28 @@ def _timestep(settings: Section, analysis: str) -> float | None:
     return settings.number("timestep", 1e-9, LONGEST_TIMESTEP, allowed)
 
 
-def _axis(grid: Section, axis: str) -> list[Any]:
-    """The values of a grid axis: a list, or numbers from ... to ... in so many steps."""
+def _count(grid: Section, axis: str) -> int:
+    """How many values a grid axis has, before they are made: a list, or numbers from ... to ... in so many steps."""
     values, example = grid.content[axis], _EXAMPLES.get(axis, "0.50, 0.52")
     if axis in COMPONENTS and isinstance(values, dict) and values.keys() == {"from", "to", "steps"}:
-        low, high = _range(Section(grid.path, grid.name, {axis: [values["from"], values["to"]]}), axis)
         span = Section(grid.path, grid.label(axis), values)
-        return [*np.linspace(low, high, _few(span, "steps", span.whole("steps", 1))).tolist()]
+        return _few(span, "steps", span.whole("steps", 1))
     if not isinstance(values, list) or not values:
-        form = "" if axis in _EXAMPLES else " or { from = ..., to = ..., steps = ... }"
+        form = "" if axis in NAMES else " or { from = ..., to = ..., steps = ... }"
         grid.refuse(axis, values, f"a list like [{example}]{form}")
-    _few(grid, axis, len(values))
-    if axis in _EXAMPLES:
+    return _few(grid, axis, len(values))
+
+
+def _axis(grid: Section, axis: str) -> list[Any]:
+    """The values of a grid axis."""
+    values: Any = grid.content[axis]
+    if isinstance(values, dict):
+        low, high = _range(Section(grid.path, grid.name, {axis: [values["from"], values["to"]]}), axis)
+        return [*np.linspace(low, high, values["steps"]).tolist()]
+    if axis in NAMES:
         if not all(isinstance(value, str) for value in values) or len({*values}) < len(values):
             grid.refuse(axis, values, "a list of different names")
-        return values
+        return [*values]
     variable = COMPONENTS[axis].variable
     for value in values:
         if not (is_number(value) and variable.accepts(value)):
@@ -151,12 +198,11 @@ def _sampled(sample: Section, size: int) -> dict[str, FloatArray]:
     ranges = {name: _range(sample, name) for name in sample.content if name in COMPONENTS}
     seed = sample.content.get("seed", 0)
     if isinstance(seed, bool) or not isinstance(seed, int) or not 0 <= seed < 2**64:
-        sample.refuse("seed", seed, "a whole number from 0")
+        sample.refuse("seed", seed, "a whole number from 0, below 2^64")
     if not ranges:
         if size > 1:
             sample.refuse("size", size, "1 where no variable has a range; give one, as in R2 = [0.14, 0.18]")
         return {}
-    _few(sample, "size", size)
     from scipy.stats.qmc import LatinHypercube
 
     unit = LatinHypercube(len(ranges), rng=seed).random(size)

@@ -1,0 +1,137 @@
+"""What a sweep finds out about each of its points: statics in a batch, and a simulated turn each."""
+
+from collections.abc import Mapping
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fes_mj.cycles import Cycles, WorkTable, cycles, uncertain_table
+from fes_mj.design import Design
+from fes_mj.errors import InputError, UnstableError
+from fes_mj.joints import JOINTS
+from fes_mj.moments import JointMoments
+from fes_mj.sweep.study import NAMES, Study
+from fes_mj.units import RPM
+from fes_mj.variables import COMPONENTS, VARIABLES, replaced
+
+Columns: TypeAlias = dict[str, NDArray[Any]]
+
+_STATIC = {
+    "cadence_rpm": float,
+    "turns": bool,
+    "why": str,
+    "power_mean_W": float,
+    "power_sd_W": float,
+    "extrapolated_share": float,
+    "work_per_turn_J": float,
+    **{name.format(joint): float for joint in JOINTS for name in ("{}_min_deg", "{}_max_deg", "mean_{}_speed_deg_s")},
+}
+_DYNAMIC = {
+    "simulated_power_mean_W": float,
+    "loop_gap_max_m": float,
+    "cadence_ripple": float,
+    "timestep_s": float,
+}
+
+
+def column_types(study: Study) -> dict[str, type]:
+    """Name and type of every column of the results, in their order: point, axes, results.
+
+    why: None, or why there is no power. A cadence that is varied is a result as well: the same column.
+    """
+    axes = {axis: str if axis in NAMES else float for axis in (*study.grid, *study.sample)}
+    return {"point": int} | axes | _STATIC | (_DYNAMIC if study.analysis == "dynamic" else {})
+
+
+def evaluate(study: Study, chunk: int) -> Columns:
+    """Results of the points of a chunk, a column each as column_types says; NaN and None for what is not known."""
+    columns = study.rows(chunk)
+    varied = {name: values for name, values in columns.items() if name in COMPONENTS}
+    count = len(columns["point"])
+    for name, kind in column_types(study).items():
+        if name not in columns:
+            columns[name] = np.empty(count, object if kind is str else kind)
+    for label, design in study.designs.items():
+        for name, moments in study.moments.items():
+            rows = np.flatnonzero((columns["design"] == label) & (columns["moments"] == name))
+            if rows.size:
+                values = {variable: column[rows] for variable, column in varied.items()}
+                found = _static(design, values, moments, len(rows))
+                if study.analysis == "dynamic":
+                    found |= _dynamic(design, values, moments, study.timestep, found["why"])
+                for result, column in found.items():
+                    columns[result][rows] = column
+    columns["why"][columns["why"] == ""] = None
+    return columns
+
+
+def _static(design: Design, values: Columns, moments: JointMoments, count: int) -> Columns:
+    """Quasi-static results of a batch."""
+    batch = replaced(design, {name: column[:, None] for name, column in values.items()})
+    certain = moments.covariance is None
+    turn = cycles(batch, WorkTable.of(moments) if certain else uncertain_table(moments))
+    rpm = values.get("cadence_rpm", np.ravel(batch.linkage.cadence) / RPM)
+    turns_per_s = rpm * RPM / (2 * np.pi)
+    why = _first_reason(_reasons(turn, rpm), count)
+    work = np.where((why == "")[:, None], turn.work, np.nan)
+    power = work * np.reshape(turns_per_s, (-1, 1))
+    deviation = np.hypot(np.linalg.norm(power[:, 1:], axis=1), turn.outside_sd * turns_per_s)
+    result: dict[str, Any] = {
+        "cadence_rpm": rpm,
+        "turns": turn.turns,
+        "why": why,
+        "power_mean_W": power[:, 0],
+        "power_sd_W": np.nan if certain else deviation,
+        "extrapolated_share": turn.outside_share,
+        "work_per_turn_J": work[:, 0],
+    }
+    for joint in JOINTS:
+        result |= {
+            f"{joint}_min_deg": np.degrees(turn.low[joint]),
+            f"{joint}_max_deg": np.degrees(turn.high[joint]),
+            f"mean_{joint}_speed_deg_s": np.degrees(turn.travel[joint]) * turns_per_s,
+        }
+    return result
+
+
+def _reasons(turn: Cycles, rpm: NDArray[Any]) -> Mapping[str, NDArray[np.bool_]]:
+    """Why `fes_mj static` refuses a design: reason -> which."""
+    never = {f"the {joint} never enters the range of the moments": which for joint, which in turn.never_inside.items()}
+    low, high = VARIABLES["cadence_rpm"].low, VARIABLES["cadence_rpm"].high
+    return turn.obstacles | never | {f"its cadence is not within {low:g} to {high:g} rpm": (rpm < low) | (rpm > high)}
+
+
+def _first_reason(reasons: Mapping[str, NDArray[np.bool_]], count: int) -> NDArray[np.object_]:
+    """The first reason that holds for each of the points, "" where none does, shape (count,)."""
+    why = np.full(count, "", object)
+    for reason, which in reversed([*reasons.items()]):
+        why[np.broadcast_to(which, count)] = reason
+    return why
+
+
+def _dynamic(
+    design: Design, values: Columns, moments: JointMoments, timestep: float | None, why: NDArray[np.object_]
+) -> Columns:
+    """One simulated turn of every point that has a power, the loop in machine code.
+
+    Why a run breaks down or is refused goes to `why`.
+    """
+    from fes_mj.simulation.bench import simulate
+    from fes_mj.simulation.compiled import compiled_loop
+
+    result = {name: np.full(len(why), np.nan) for name in _DYNAMIC}
+    for row in np.flatnonzero(why == ""):
+        point = {name: float(column[row]) for name, column in values.items()}
+        cadence = point["cadence_rpm"] * RPM if "cadence_rpm" in point else None
+        try:
+            run = simulate(
+                replaced(design, point), moments, cadence=cadence, timestep=timestep, make_loop=compiled_loop
+            )
+        except (UnstableError, InputError) as error:  # it breaks down, or needs more steps than there may be
+            why[row] = str(error).removeprefix(f"{design.name}: ")
+            continue
+        measured = (run.power_mean, run.loop_gap_max, run.cadence_ripple, run.timestep)
+        for name, value in zip(result, measured, strict=True):
+            result[name][row] = value
+    return result
