@@ -148,4 +148,4 @@ def _cell(name: str, value: Any) -> str:
         return "" if value is None else str(value)
     if name == "extrapolated_share":
         return f"{100 * value:.1f}"
-    return f"{value:.2f}" if name.endswith("_W") else f"{value:.4g}"
+    return f"{value:.2f}" if name.endswith("_W") else f"{value:#.4g}"

@@ -72,7 +72,7 @@ class Sweep:
                 if not file.schema_arrow.equals(schema, check_metadata=True) or file.metadata.num_rows != len(numbers):
                     return None
                 table = file.read()
-        except (OSError, arrow.ArrowException):
+        except (OSError, ValueError, arrow.ArrowException):  # what damage makes of it
             return None
         return table if np.array_equal(table["point"].to_numpy(), numbers) else None
 

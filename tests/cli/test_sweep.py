@@ -1,8 +1,13 @@
 """`fes_mj sweep`: its summary, and what it leaves behind when it cannot run."""
 
 import json
+import signal
+import subprocess
+import sys
+import time
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from fes_mj.cli.app import run
@@ -34,7 +39,28 @@ def test_a_study_without_turning_points_has_no_best(tmp_path: Path, capsys: pyte
     assert summary["best"] is None
 
 
-@pytest.mark.parametrize("address", ["tcp://127.0.0.1:9", "nonsense"])
+@pytest.mark.parametrize(
+    "address",
+    [
+        "tcp://127.0.0.1:9",
+        "tcp://no.such.host.invalid:8786",
+        "nonsense",
+        "",
+        "tcp://",
+        "tcp://:8786",
+        "tcp://127.0.0.1",
+        "tcp://127.0.0.1:99999",
+        "tcp://127.0.0.1:port",
+        "tcp://[::1",
+        "tcp://host:1/path",
+        "http://x",
+        "tls://127.0.0.1:9",
+        "scheduler.json",
+        ".",
+        "\u4e2d\U0001f4a5",
+        f"tcp://{'x' * 300}:80",
+    ],
+)
 def test_no_scheduler_loses_nothing(
     study: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, address: str
 ) -> None:
@@ -45,6 +71,114 @@ def test_no_scheduler_loses_nothing(
     sweep.run()
     sweep.path(1).unlink()
     before = sorted(path.name for path in folder.iterdir())
-    assert run(["sweep", str(study), "-o", str(folder), "--cluster", address]) == 2
+    assert run(["sweep", str(study), "-o", str(folder), f"--cluster={address}"]) == 2
     assert f"--cluster {address}: no Dask scheduler" in capsys.readouterr().err.replace("\n", " ")
     assert sorted(path.name for path in folder.iterdir()) == before
+
+
+def test_the_terminal_shows_the_ten_best(study: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["sweep", str(study), "-o", str(tmp_path / "out"), "--jobs", "1"]) == 0
+    lines = capsys.readouterr().out.partition("Points with the most mean crank power")[2].splitlines()
+    heading = next(line for line in lines if "point" in line)
+    for part in ("design", "moments", "cadence, rpm", "thigh, m", "R1x, m", "gear_ratio", "power, W", "+-, W"):
+        assert part in heading
+    shown = [line.split() for line in lines if line.strip()[:1].isdigit()]
+    top = Sweep(load_study(study), tmp_path / "out").summary()["top"]
+    assert [int(cells[0]) for cells in shown] == [row["point"] for row in top]
+    assert [float(cells[7]) for cells in shown] == pytest.approx([row["power_mean_W"] for row in top], abs=0.006)
+
+
+def test_rows_and_plot_are_written_when_asked(tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    study, out = tmp_path / "study.toml", tmp_path / "out"
+    study.write_text('[grid]\ndesign = ["d1"]\nR2 = { from = 0.14, to = 0.18, steps = 9 }\n')
+    rows, plot = out / "rows.csv", tmp_path / "power.png"
+    command = ["sweep", str(study), "-o", str(out), "--jobs", "1", "-q", "--csv", str(rows), "--plot", str(plot)]
+    assert run(command) == 0
+    assert len(rows.read_text().splitlines()) == 10
+    assert plot.read_bytes().startswith(b"\x89PNG")
+    assert run(command) == 0  # over its own
+
+
+def test_the_rows_never_replace_the_moments(study: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    moments = tmp_path / "mine.csv"
+    before = moments.read_text()
+    assert run(["sweep", str(study), "-o", str(tmp_path / "out"), "--csv", str(tmp_path / "." / "mine.csv")]) == 2
+    assert "which this command reads" in capsys.readouterr().err.replace("\n", " ")
+    assert moments.read_text() == before
+
+
+@pytest.mark.parametrize(
+    ("grid", "option", "said"),
+    [
+        ("R2 = [0.15]", "--plot=a.png", "none varies"),
+        ("R2 = [0.15, 0.16]\nR6 = [0.1, 0.11]\nR8 = [0.1, 0.11]", "--plot=a.png", "R2, R6, R8 varies"),
+        ('moments = ["p1p2", "p1p3"]\nR2 = [0.15, 0.16]\nR6 = [0.1, 0.11]', "--plot=a.png", "moments, R2, R6 varies"),
+        (
+            "R2 = { from = 0.1, to = 0.2, steps = 1000 }\nR6 = { from = 0.1, to = 0.2, steps = 1001 }",
+            "--plot=a.png",
+            "1,001,000",
+        ),
+        ("R2 = [0.15, 0.16]", "--plot=a.pdf", "must end in .png"),
+        ("R2 = [0.15, 0.16]", "--csv=a.txt", "must end in .csv"),
+        ("R2 = [0.15, 0.16]", "--csv=no/a.csv", "does not exist"),
+    ],
+)
+def test_what_cannot_be_written_is_said_before_anything_runs(
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+    grid: str,
+    option: str,
+    said: str,
+) -> None:
+    pytest.importorskip("matplotlib")
+    monkeypatch.chdir(tmp_path)
+    Path("study.toml").write_text(f'[grid]\ndesign = ["d1"]\n{grid}\n')
+    assert run(["sweep", "study.toml", "-o", "out", option]) == 2
+    assert said in capsys.readouterr().err.replace("\n", " ")
+    assert not [*tmp_path.glob("out/*")]
+
+
+MANY_CHUNKS = """
+[study]
+chunk = 100
+[grid]
+design = ["d1", "r2"]
+[sample]
+size = 3000
+seed = 1
+thigh = [0.50, 0.54]
+"""
+
+
+def _killed_again_and_again(folder: Path, kills: int, seed: int) -> None:
+    """Stop a sweep at random times in random ways, then let it end: the rows of an undisturbed one, bit for bit."""
+    random, study = np.random.default_rng(seed), folder / "study.toml"
+    study.write_text(MANY_CHUNKS)
+    sweep = Sweep(load_study(study), folder / "out")
+    command = [sys.executable, "-m", "fes_mj", "sweep", str(study), "-o", str(sweep.folder), "--jobs", "1", "-q"]
+    for _ in range(kills):
+        before = len([*sweep.folder.glob("chunk-*")])
+        with subprocess.Popen(command, stderr=subprocess.DEVNULL) as process:
+            while process.poll() is None and len([*sweep.folder.glob("chunk-*")]) == before < sweep.study.chunks:
+                time.sleep(0.002)
+            time.sleep(random.uniform(0, 0.05))
+            process.send_signal(random.choice([signal.SIGINT, signal.SIGTERM, signal.SIGKILL]))
+        for path in random.choice([*sweep.folder.glob("chunk-*")], 2):  # what is there counts, and only once
+            path.unlink(missing_ok=True)
+    assert len(sweep.finished()) < sweep.study.chunks
+    subprocess.run(command, check=True)
+    assert not [*sweep.folder.glob(".*")]
+    undisturbed = Sweep(sweep.study, folder / "undisturbed")
+    undisturbed.run()
+    assert sweep.read().equals(undisturbed.read())
+
+
+def test_a_sweep_killed_twice_has_the_rows_of_an_undisturbed_one(tmp_path: Path) -> None:
+    _killed_again_and_again(tmp_path, 2, 1)
+
+
+@pytest.mark.long
+def test_a_sweep_killed_twenty_times_has_the_rows_of_an_undisturbed_one(tmp_path: Path) -> None:
+    _killed_again_and_again(tmp_path, 20, 2)

@@ -33,6 +33,22 @@ def test_the_example_is_a_study() -> None:
         ("thigh = {", "R1x = {", "R1x is both in grid and in sample"),
         ('design = ["d1", "r2", "mine.toml"]', "", "grid.design is missing"),
         ('"r2"', '"trt"', ""),
+        (
+            "steps = 3",
+            "steps = 1000000000000",
+            "grid.thigh.steps is 1000000000000; it must be at most 1,000,000 values",
+        ),
+        ("steps = 3", f"steps = 0x{'f' * 9000}", "grid.thigh.steps is a number of thousands of digits; it must be"),
+        ("chunk = 7", "chunk = 1000000000000", "study.chunk is 1000000000000; it must be at most 100,000 points"),
+        ("steps = 3", "steps = 300000", "study.chunk is 7; it must be at least 15 for 14,400,000 points"),
+        (
+            "steps = 3",
+            "steps = 300000 }\nmass = { from = 60, to = 80, steps = 1000",
+            "14,400,000,000 points; a study has",
+        ),
+        ("size = 4", "size = 1000000000000", "sample.size is 1000000000000; it must be at most 1,000,000 values"),
+        ("seed = 3", "seed = -1", "sample.seed is -1; it must be a whole number from 0, below 2^64"),
+        ("seed = 3", f"seed = {2**64}", f"sample.seed is {2**64}; it must be"),
         ("size = 4", "size = 9e9", "sample.size is 9000000000.0; it must be a whole number"),
     ],
 )

@@ -1,0 +1,123 @@
+"""What a row says, against what the quasi-static solver and the simulation say of the same design."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import fes_mj
+from fes_mj.errors import InputError, UnstableError
+from fes_mj.statics import QuasiStatic
+from fes_mj.sweep.evaluation import column_types, evaluate
+from fes_mj.sweep.study import load_study
+from fes_mj.units import RPM
+from fes_mj.variables import replaced
+
+WIDE = """
+[grid]
+design = ["trt", "r2", "d1"]
+moments = ["p1p2", "mine.csv"]
+[sample]
+size = 20
+seed = 2
+thigh = [0.40, 0.60]
+seat_angle = [0, 60]
+R1x = [-0.80, -0.55]
+"""
+
+
+def evaluated(study: Path, text: str) -> list[dict[str, Any]]:
+    """The rows of a study in one chunk."""
+    study.write_text(text)
+    columns = evaluate(load_study(study), 0)
+    assert columns.keys() == column_types(load_study(study)).keys()
+    return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
+
+
+def alone(row: dict[str, Any], study: Path) -> QuasiStatic | InputError:
+    """The quasi-static result of a row's design, or why there is none."""
+    names = [name for name in ("thigh", "seat_angle", "R1x", "gear_ratio") if name in row]
+    design = replaced(fes_mj.load_design(row["design"]), {name: float(row[name]) for name in names})
+    source = study.parent / row["moments"] if row["moments"].endswith(".csv") else row["moments"]
+    try:
+        return fes_mj.quasi_static(design, fes_mj.load_moments(source), row["cadence_rpm"] * RPM)
+    except InputError as error:
+        return error
+
+
+def test_rows_say_what_the_solver_says(study: Path) -> None:
+    said = set()
+    for row in evaluated(study, WIDE):
+        found = alone(row, study)
+        assert row["turns"] == (not isinstance(found, fes_mj.AssemblyError))
+        said.add(row["why"])
+        if isinstance(found, InputError):
+            assert row["why"].partition(" never")[0].partition(" through")[0] in str(found)
+            assert np.isnan([row["power_mean_W"], row["power_sd_W"], row["work_per_turn_J"]]).all()
+            assert np.isnan(row["extrapolated_share"]) == (not row["turns"])
+        else:
+            assert row["why"] is None
+            assert row["power_mean_W"] == pytest.approx(found.power_mean, rel=2e-4, abs=2e-3)
+            assert row["extrapolated_share"] == pytest.approx(found.extrapolation.share, abs=4e-3)
+            if found.power_sd is None:
+                assert np.isnan(row["power_sd_W"])
+            else:
+                assert row["power_sd_W"] == pytest.approx(found.power_sd, rel=2e-3)
+    assert said >= {None, "thigh and shank cannot close", "the hip never enters the range of the moments"}
+
+
+@pytest.mark.parametrize(
+    ("change", "why"),
+    [
+        ("R2 = [0.4]", "rocker and coupler cannot close"),
+        ("R2 = [0.16930]", "rocker and coupler within 0.1 mm of a dead centre"),
+        ("thigh = [0.2]", "thigh and shank cannot close"),
+        ("seat_angle = [0]", "the hip never enters the range of the moments"),
+        ("thigh = [0.9]\nshank = [0.9]", "the knee never enters the range of the moments"),
+        ("gear_ratio = [15]", "its cadence is not within 1 to 200 rpm"),
+    ],
+)
+def test_every_reason_by_name(study: Path, change: str, why: str) -> None:
+    (row,) = evaluated(study, f'[grid]\ndesign = ["d1"]\n{change}\n')
+    assert row["why"] == why
+    assert np.isnan(row["power_mean_W"])
+
+
+def test_the_moments_are_those_of_simulate_unless_named(study: Path) -> None:
+    (unnamed,) = evaluated(study, '[grid]\ndesign = ["d1"]\n')
+    (named,) = evaluated(study, '[grid]\ndesign = ["d1"]\nmoments = ["p1p2"]\n')
+    assert unnamed == named
+
+
+def test_one_run_that_fails_costs_one_row(study: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Refused, broken down, and simulated, in one chunk."""
+    pytest.importorskip("numba")
+    from fes_mj.simulation import bench
+
+    original = bench.simulate
+
+    def simulate(design: fes_mj.Design, *arguments: Any, **options: Any) -> bench.Simulation:
+        if design.rider.mass == 60:
+            raise InputError(f"{design.name}: at 60 rpm the run needs endlessly many time steps")
+        if design.rider.mass == 70:
+            raise UnstableError("the simulation breaks down at step 9")
+        return original(design, *arguments, **options)
+
+    monkeypatch.setattr(bench, "simulate", simulate)
+    rows = evaluated(study, '[study]\nanalysis = "dynamic"\n[grid]\ndesign = ["d1"]\nmass = [60, 70, 80]\n')
+    whys = ["at 60 rpm the run needs endlessly many time steps", "the simulation breaks down at step 9", None]
+    assert [row["why"] for row in rows] == whys
+    assert [bool(np.isnan(row["simulated_power_mean_W"])) for row in rows] == [True, True, False]
+    assert not np.isnan([row["power_mean_W"] for row in rows]).any()
+
+
+def test_a_run_of_too_many_steps_costs_one_row(study: Path) -> None:
+    pytest.importorskip("numba")
+    text = '[study]\nanalysis = "dynamic"\ntimestep = 2e-5\n[grid]\ndesign = ["d1"]\ncadence_rpm = [1, 200]\n'
+    refused, good = evaluated(study, text)
+    assert "at 1 rpm the run needs 1 x 3,000,000 time steps, more than" in refused["why"]
+    assert refused["power_mean_W"] == pytest.approx(good["power_mean_W"] / 200)
+    assert np.isnan(refused["simulated_power_mean_W"])
+    assert good["why"] is None
+    assert good["simulated_power_mean_W"] == pytest.approx(good["power_mean_W"], rel=1e-3)
