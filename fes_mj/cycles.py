@@ -12,6 +12,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 from scipy.integrate import cumulative_trapezoid
+from scipy.sparse import csr_array
 
 from fes_mj.arrays import BoolArray, FloatArray, IntArray
 from fes_mj.batch import batch_size, take
@@ -63,16 +64,24 @@ class WorkTable:
     def sets(self) -> int:
         return int(self._work.knee.shape[1])
 
-    def area(self, joint: str, angle: FloatArray) -> FloatArray:
-        """Work of extending to `angle` (rad, shape (m,)) and flexing back, J, shape (m, sets), up to a constant."""
-        source = self.measured_on.source_angle
-        return self._at(joint, source(joint, angle, 1.0)) - self._at(joint, source(joint, angle, -1.0))
+    def work(self, joint: str, angle: FloatArray, sign: FloatArray, counts: IntArray) -> FloatArray:
+        """Work of a joint that turns round at these angles, J a turn, shape (designs, sets).
 
-    def _at(self, joint: str, source: FloatArray) -> FloatArray:
-        position = (source + np.pi) * (_TABLE_STEPS / (3 * np.pi))
-        index = np.minimum(position.astype(np.int64), _TABLE_STEPS - 1)
-        work = self._work[joint]
-        return np.asarray(work[index] + (position - index)[:, None] * (work[index + 1] - work[index]))
+        angle: rad, and sign: 1 for a maximum, -1 for a minimum, shape (m,), design by design. counts: reversals of each
+        design, shape (designs,).
+        """
+        # work of extending to an angle and flexing back, up to a constant: linear in four entries of the table
+        index, weight = np.empty((len(angle), 4), np.int64), np.empty((len(angle), 4))
+        for column, direction in ((0, 1.0), (2, -1.0)):
+            source = self.measured_on.source_angle(joint, angle, direction)
+            position = (source + np.pi) * (_TABLE_STEPS / (3 * np.pi))
+            index[:, column] = np.minimum(position.astype(np.int64), _TABLE_STEPS - 1)
+            index[:, column + 1] = index[:, column] + 1
+            weight[:, column + 1] = direction * sign * (position - index[:, column])
+            weight[:, column] = direction * sign - weight[:, column + 1]
+        ends = np.concatenate([[0], 4 * np.cumsum(counts)])
+        shape = (len(counts), _TABLE_STEPS + 1)
+        return np.asarray(csr_array((weight.ravel(), index.ravel(), ends), shape) @ self._work[joint])
 
 
 @lru_cache(maxsize=32)
@@ -152,14 +161,13 @@ def cycles(design: Design, table: WorkTable, points: int = TURN_POINTS) -> Cycle
         travel = np.where(turns, 2 * np.bincount(rows, sign * angle, len(reach)), np.nan)
         middle = (low + high) / 2  # the whole path by whole turns, so that it does not jump where it is far outside
         angle = angle + (reference.around(joint, middle) - middle)[rows]
-        present, first = np.unique(rows, return_index=True)
-        area = table.area(joint, np.clip(angle, *reference.ranges[joint]))
-        work[present] += np.add.reduceat(sign[:, None] * area, first) if present.size else 0
+        counts = np.bincount(rows, minlength=len(reach))
+        work[:] += table.work(joint, np.clip(angle, *reference.ranges[joint]), sign, counts)
         for excess in (reference.ranges[joint][0] - angle, angle - reference.ranges[joint][1]):
             drift = np.bincount(rows, sign * drift_area(excess, reference.half_range(joint)), len(reach))
             variance[:] += 2 * (table.spread[joint] * drift) ** 2  # in extension and in flexion, independently
         low[~turns] = high[~turns] = np.nan
-        return low, high, travel, np.bincount(rows, minlength=len(reach))
+        return low, high, travel, counts
 
     low, high, travel, count = (PerJoint(*each) for each in zip(*PerJoint.of(of_joint), strict=True))
     outside_sd = np.where(turns, np.sqrt(variance), np.nan)

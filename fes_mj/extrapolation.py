@@ -81,7 +81,10 @@ def beyond(reference: ReferenceTricycle, angle: PerJoint[FloatArray]) -> PerJoin
         path = angle[joint]
         middle = (path.max(axis=-1, keepdims=True) + path.min(axis=-1, keepdims=True)) / 2
         to_range = reference.around(joint, middle) - middle - sum(reference.ranges[joint]) / 2
-        return np.asarray(np.abs(path + to_range) - (reference.half_range(joint) + NO_MORE))
+        distance = path + to_range
+        np.abs(distance, out=distance)
+        distance -= reference.half_range(joint) + NO_MORE
+        return np.asarray(distance)
 
     return PerJoint.of(of_joint)
 
@@ -92,12 +95,12 @@ def outside_share(beyond: PerJoint[FloatArray]) -> FloatArray:
     beyond: as `beyond` gives it over uniform crank angles of one turn, shape (designs, angles). Shape (designs,).
     """
     farther = np.maximum(*beyond)
-    share, rows = np.zeros(len(farther)), np.flatnonzero(farther.max(axis=1) > 0)
-    here = farther[rows]
-    there = np.roll(here, -1, axis=1)
-    high, low = np.maximum(here, there), np.minimum(here, there)
-    share[rows] = np.clip(high / np.maximum(high - low, np.finfo(float).tiny), 0, 1).mean(axis=1)
-    return share
+    outside, (designs, angles) = farther > 0, farther.shape
+    rows, columns = np.nonzero(outside != np.roll(outside, -1, axis=1))
+    here, there = farther[rows, columns], farther[rows, (columns + 1) % angles]
+    part = np.maximum(here, there) / np.abs(here - there)  # of the way to the next angle, for which `here` stands
+    correction = np.bincount(rows, part - outside[rows, columns], designs)
+    return np.asarray((outside.sum(axis=1) + correction) / angles)
 
 
 def never_inside(beyond: PerJoint[FloatArray]) -> PerJoint[BoolArray]:
