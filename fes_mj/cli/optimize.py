@@ -3,19 +3,25 @@
 from __future__ import annotations
 
 import sys
+from contextlib import nullcontext
+from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import numpy as np
 from cyclopts import Parameter
 
-from fes_mj.cli.search_options import SearchOptions
-from fes_mj.console import output, print_table, progress_bar, say
-from fes_mj.design_file import load_design
-from fes_mj.files import json_text, require_writable, write_text
+from fes_mj.cli.process import interruption_code
+from fes_mj.cli.search_options import SearchOptions, shell_word
+from fes_mj.console import errors, output, print_table, progress_bar, say
+from fes_mj.design_file import design_toml, load_design
+from fes_mj.files import json_text, require_replaceable, require_writable, write_text
 from fes_mj.moments import GROUPS
+from fes_mj.text import printable
 
 if TYPE_CHECKING:
+    from fes_mj.design import Design
+    from fes_mj.optimization.findings import Findings
     from fes_mj.optimization.outcome import Outcome
     from fes_mj.optimization.problem import Problem
     from fes_mj.optimization.winner import Winner
@@ -33,73 +39,124 @@ def optimize(
 ) -> int:
     """Find the linkage with the most mean crank power; exit code 1 if its simulation disagrees with statics.
 
+    With -o the best design so far is in its file from the first feasible one on. However the run is stopped, the same
+    command goes on: what is known stands in the folder BEST.search beside the file, which is gone at the end. Finished
+    searches are not done again.
+
     Parameters
     ----------
     kind
         Which six-bar: crt (pedal on the rocker) or cdt (pedal on the coupler).
     out
-        The design file to write (.toml); its model (.xml), and the front (.csv), appear beside it.
+        The design file to write (.toml), with the command that finds it again; its model (.xml), and the front (.csv),
+        appear beside it. A file that was there is replaced at the end.
     report
         A page on the design (.html): numbers, motion, power, constraints.
     """
     options.check()
-    _check_files(out, report)
-    moments = options.load_moments()
+    _check_files(out, report, options)
+    moments, compared_with = options.load_moments(), load_design(options.speeds_of)
     problem = options.load_problem(kind, moments)
-    outcome = _search(problem, options)
-    design = problem.design(outcome.x, out.stem if out else f"{kind}-{moments.name}")
-    how = f"--method {options.method} --seed {options.seed}"
-    origin = f"Found by fes_mj optimize {kind} {how}, {outcome.evaluations} evaluations."
-    # first: what was found stays, whatever its simulation does
-    files = outcome.write(design, out, origin) if out else {}
+    command = options.command(kind, problem) + (f" -o {shell_word(out.name)}" if out else "")
+    origin = f"Found by fes_mj {version('fes-mj')}:\n{command}"
+    from fes_mj.optimization.findings import Findings
     from fes_mj.optimization.winner import assess
 
-    winner = assess(design, load_design(options.speeds_of), moments, options.seed)
-    if report:
-        from fes_mj.optimization.page import page_html
+    findings = Findings(out, problem, origin, options.recipe(kind, problem)) if out else None
+    try:
+        outcome = _search(problem, options, findings)
+        design = problem.design(outcome.x, printable(out.stem) if out else f"{kind}-{moments.name}")
+        # first: what was found stays, whatever becomes of the rest
+        files = _write(design, outcome, origin, findings, options) if findings else {}
+        winner = assess(design, compared_with, moments, options.seed)
+        if report:
+            from fes_mj.optimization.page import page_html
 
-        write_text(report, page_html(winner, outcome, origin))
-        files["report"] = str(report)
+            write_text(report, page_html(winner, outcome, origin))
+            files["report"] = str(report)
+    except KeyboardInterrupt as error:
+        if not (findings and findings.best):
+            raise
+        power = problem.evaluate(np.array([findings.best[1]])).power[0, 0]
+        errors.print(
+            f"fes_mj: interrupted; the best so far, {power:.2f} W, is saved in {printable(str(findings.so_far))}; "
+            "the same command goes on from there",
+            soft_wrap=True,
+        )
+        return interruption_code(error)
+    if findings:
+        findings.remove()
     if options.json:
-        sys.stdout.write(json_text(outcome.summary(winner) | {"design_file": None, **files}))
+        sys.stdout.write(json_text(outcome.summary(winner) | {"command": command, "design_file": None, **files}))
     elif not options.quiet:
         _print(winner, outcome)
-        for what, file in files.items():
-            say(f"{what.replace('_', ' ')}: {file}")
+        if report:
+            say(f"report: {report}")
     return 0 if winner.case.agrees else 1
 
 
-def _check_files(out: Path | None, report: Path | None) -> None:
-    """Refuse files that could not be written, before anything runs."""
+def _check_files(out: Path | None, report: Path | None, options: SearchOptions) -> None:
+    """Refuse files that could not or must not be written, before anything runs."""
     if out:
-        require_writable(out, "the design", ".toml")
+        require_writable(out, "the design", ".toml", options.inputs)
+        for key, (path, mark) in _beside(out, options).items():
+            require_replaceable(path, f"the {key.partition('_')[0]}", mark, options.inputs)
     if report:
         from fes_mj.viewing.pages import require_page_packages
 
-        require_writable(report, "the page", ".html")
+        require_writable(report, "the page", ".html", options.inputs)
         require_page_packages()
 
 
-def _search(problem: Problem, options: SearchOptions) -> Outcome:
+def _search(problem: Problem, options: SearchOptions, findings: Findings | None) -> Outcome:
     """The best of several independent searches, or the front."""
     from fes_mj.optimization.optimize import optimize as run
     from fes_mj.optimization.outcome import Outcome, front_outcome
     from fes_mj.parallel import Workers
 
-    if options.method == "nsga-ii":
-        return front_outcome(problem, options.budget, options.seed, options.smooth)
-    with progress_bar(f"{options.method}, searches", options.searches, options.silent) as advance:
-        results = run(
-            problem,
-            options.method,
-            searches=options.searches,
-            budget=options.budget,
-            seed=options.seed,
-            start=problem.variables(problem.template) if options.start else None,
-            workers=Workers(options.jobs, options.cluster),
-            progress=lambda _: advance(1),
-        )
+    with findings.searching() if findings else nullcontext():
+        if options.method == "nsga-ii":
+            return front_outcome(problem, options.evaluations, options.seed, options.smooth, findings)
+        with progress_bar(f"{options.method}, searches", options.searches, options.silent) as advance:
+            results = run(
+                problem,
+                options.method,
+                searches=options.searches,
+                budget=options.budget,
+                seed=options.seed,
+                start=problem.variables(problem.template) if options.start else None,
+                workers=Workers(options.jobs, options.cluster),
+                findings=findings,
+                progress=advance,
+            )
     return Outcome(problem, options.method, results[0].x, sum(result.evaluations for result in results))
+
+
+def _beside(out: Path, options: SearchOptions) -> dict[str, tuple[Path, str]]:
+    """What appears beside the design file: key of JSON -> path, and what marks a file there as one of fes_mj's."""
+    from fes_mj.optimization.pareto import CSV_MARK
+    from fes_mj.simulation.export import MARKS
+
+    files = {"model_file": (out.with_suffix(".xml"), MARKS["model"])}
+    if options.method == "nsga-ii":
+        files["front_file"] = (out.with_name(f"{out.stem}-front.csv"), CSV_MARK)
+    return files
+
+
+def _write(design: Design, outcome: Outcome, origin: str, findings: Findings, options: SearchOptions) -> dict[str, str]:
+    """Write the design file, then, each once the one before is there, what appears beside it; key of JSON -> file."""
+    from fes_mj.simulation.export import mjcf_text
+    from fes_mj.simulation.mjcf import build_mjcf
+
+    paths = {"design_file": findings.out, **{key: path for key, (path, _) in _beside(findings.out, options).items()}}
+    texts = {"design_file": lambda: design_toml(design, origin), "model_file": lambda: mjcf_text(build_mjcf(design))}
+    if outcome.front:
+        texts["front_file"] = outcome.front.as_csv
+    for key, text in texts.items():
+        findings.write(text(), paths[key])
+        if not options.silent:
+            say(f"{key.replace('_', ' ')}: {paths[key]}")
+    return {key: str(paths[key]) for key in texts}
 
 
 def _print(winner: Winner, outcome: Outcome) -> None:

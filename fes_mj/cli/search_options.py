@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import os
+import shlex
+from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
 
 from fes_mj.cli.options import MomentsOptions, PrintOptions
-from fes_mj.errors import InputError
+from fes_mj.errors import InputError, require_extra
 from fes_mj.moments import JointMoments
+from fes_mj.provenance import provenance
 
 if TYPE_CHECKING:
     from fes_mj.optimization.problem import Problem
 
 Methods = Literal["differential-evolution", "cma-es", "nsga-ii", "random-pursuit"]
+_PACKAGES = {"cma-es": "cma", "nsga-ii": "pymoo"}
+_WITHOUT_EFFECT = ("json", "quiet", "jobs", "cluster")  # on what is found
 
 
 @Parameter(name="*")
@@ -81,6 +86,8 @@ class SearchOptions(PrintOptions, MomentsOptions):
             raise InputError(
                 "--caution needs the error bars of one group's recovered moments: not with --moments or nsga-ii"
             )
+        if self.method in _PACKAGES:
+            require_extra("optimize", _PACKAGES[self.method])
         if self.smooth and self.method != "nsga-ii":
             raise InputError("--smooth is an objective of its own: it needs --method nsga-ii")
 
@@ -99,3 +106,45 @@ class SearchOptions(PrintOptions, MomentsOptions):
             hip_speed=self.hip_speed_limit,
             caution=self.caution,
         )
+
+    @property
+    def inputs(self) -> list[Path]:
+        """The files that the options name, which no output may replace."""
+        return [Path(name) for name in (self.start, self.speeds_of, self.moments, self.problem) if name]
+
+    @property
+    def evaluations(self) -> int:
+        """Of each search."""
+        from fes_mj.optimization.methods import BUDGETS
+
+        return self.budget or BUDGETS[self.method]
+
+    def command(self, kind: str, problem: Problem) -> str:
+        """The command line, for a shell, that finds the same again: what is left out by default is spelled out."""
+        spelled_out = {
+            "group": None if self.moments else self.group or "p1p2",
+            "budget": self.evaluations,
+            **{f"{joint}_speed_limit": speed for joint, speed in problem.joint_speed.items()},
+        }
+        words = ["fes_mj", "optimize", kind]
+        for field in fields(self):
+            value = spelled_out.get(field.name, getattr(self, field.name))
+            if field.name in _WITHOUT_EFFECT or value is None or value is False:
+                continue
+            option, text = "--" + field.name.replace("_", "-"), str(value)
+            words += [option] if value is True else [f"{option}={text}"] if text[:1] == "-" else [option, text]
+        return " ".join(map(shell_word, words))
+
+    def recipe(self, kind: str, problem: Problem) -> dict[str, Any]:
+        """What the outcome depends on beside the problem: the command and the versions of what carries it out."""
+        packages = [_PACKAGES[self.method]] if self.method in _PACKAGES else []
+        return provenance(packages=packages) | {"command": self.command(kind, problem)}
+
+
+def shell_word(word: str) -> str:
+    r"""A word as a shell takes it on one line: bytes of what cannot be printed as $'\xe9'."""
+    if word.isprintable():
+        return shlex.quote(word)
+    plain = range(ord(" "), 127)
+    escaped = (chr(byte) if byte in plain and byte not in b"'\\" else f"\\x{byte:02x}" for byte in os.fsencode(word))
+    return f"$'{''.join(escaped)}'"

@@ -102,5 +102,5 @@ METHODS: dict[str, Method] = {
     "cma-es": cma_es,
     "random-pursuit": random_pursuit,
 }
-# Of one search. Random pursuit stops by itself, after 0.04 to 1 million trials.
-BUDGETS = {"differential-evolution": 50_000, "cma-es": 50_000, "random-pursuit": 5_000_000}
+# Evaluations of one search. Random pursuit stops by itself, after 0.04 to 1 million trials.
+BUDGETS = {"differential-evolution": 50_000, "cma-es": 50_000, "random-pursuit": 5_000_000, "nsga-ii": 50_000}

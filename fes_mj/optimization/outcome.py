@@ -1,25 +1,18 @@
-"""The outcome of a search: the best design, its constraints, the whole front where there is one; as JSON and files."""
+"""The outcome of a search: the best design, its constraints, the whole front where there is one; as JSON and text."""
 
 from dataclasses import dataclass, replace
-from pathlib import Path
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from fes_mj.arrays import FloatArray
 from fes_mj.cycles import WorkTable
-from fes_mj.design import Design
-from fes_mj.design_file import design_toml
-from fes_mj.files import csv_text, write_text
 from fes_mj.moments import GROUPS, load_moments
+from fes_mj.optimization.findings import Findings
 from fes_mj.optimization.pareto import Front, pareto_front
 from fes_mj.optimization.problem import Problem
-from fes_mj.optimization.problem_file import VARIED
 from fes_mj.optimization.winner import Winner
-from fes_mj.simulation.export import mjcf_text
-from fes_mj.simulation.mjcf import build_mjcf
-
-FRONT_BUDGET = 50_000  # evaluations
 
 
 @dataclass(frozen=True)
@@ -75,23 +68,12 @@ class Outcome:
             )
         ]
 
-    def write(self, design: Design, out: Path, comment: str) -> dict[str, str]:
-        """Design file, model, and the front as CSV, each whole or not at all; returns the key of JSON -> file."""
-        files = {"design_file": out, "model_file": out.with_suffix(".xml")}
-        write_text(out, design_toml(design, comment))
-        write_text(files["model_file"], mjcf_text(build_mjcf(design)))
-        if self.front:
-            files["front_file"] = out.with_name(f"{out.stem}-front.csv")
-            names = [*(f"power_{group}_W" for group in GROUPS), *VARIED]
-            columns = np.column_stack([self.front.power, self.front.x]).T
-            write_text(files["front_file"], csv_text(dict(zip(names, columns, strict=True))))
-        return {key: str(path) for key, path in files.items()}
 
-
-def front_outcome(problem: Problem, budget: int | None, seed: int, smooth: bool) -> Outcome:
+def front_outcome(problem: Problem, budget: int, seed: int, smooth: bool, findings: Findings | None = None) -> Outcome:
     """The front, and of it the design with the most power averaged over both groups (the paper's recommendation)."""
     sets = tuple(load_moments(each) for each in GROUPS)
     averaged = replace(problem, table=WorkTable.of(*sets), baseline=0.0)
-    front = pareto_front(averaged, sets, budget or FRONT_BUDGET, seed, smooth)
+    improved = partial(findings.improve, 0) if findings else None
+    front = pareto_front(averaged, sets, budget, seed, smooth, improved)
     best = front.x[int(np.argmax(front.power.mean(axis=1)))]
     return Outcome(problem, "nsga-ii", best, front.evaluations, front)

@@ -13,18 +13,21 @@ from fes_mj.viewing.pages import page
 
 
 def page_html(winner: Winner, outcome: Outcome, origin: str) -> str:
-    """The page. origin: how the design was found. Raises MissingPartError without the extra "report"."""
+    """The page. origin: how the design was found, and on a second line the command that finds it again.
+
+    Raises MissingPartError without the extra "report".
+    """
     from markupsafe import Markup
 
     return page(
         Path(__file__).with_name("page.html.j2"),
         winner=winner,
-        origin=origin,
+        origin=origin.splitlines(),
         rows=winner.rows,
         constraints=outcome.limit_rows,
         space=outcome.problem.limits.space,
         figure=Markup(_figure(winner)),
-        toml=design_toml(winner.design),
+        toml=design_toml(winner.design, origin),
     )
 
 

@@ -10,13 +10,17 @@ from fes_mj.arrays import FloatArray
 from fes_mj.batch import take
 from fes_mj.design import Design
 from fes_mj.errors import InputError, require_extra
+from fes_mj.files import csv_text
 from fes_mj.moments import GROUPS, JointMoments
-from fes_mj.optimization.problem import Problem
+from fes_mj.optimization.problem import Evaluation, Problem
+from fes_mj.optimization.problem_file import VARIED
+from fes_mj.optimization.search import Improved, Search
 from fes_mj.statics import virtual_work
 from fes_mj.torque_map import torque_map
 from fes_mj.variables import LENGTHS
 
 POPULATION = 100
+CSV_MARK = f"power_{GROUPS[0]}_W,power_{GROUPS[1]}_W,{VARIED[0]},"
 
 
 @dataclass(frozen=True)
@@ -41,38 +45,54 @@ class Front:
             rows = [row | {"fluctuation": each} for row, each in zip(rows, self.fluctuation.tolist(), strict=True)]
         return rows
 
+    def as_csv(self) -> str:
+        """A row a design; CSV_MARK begins it."""
+        columns = np.column_stack([self.power, self.x]).T
+        return csv_text(dict(zip([*(f"power_{group}_W" for group in GROUPS), *VARIED], columns, strict=True)))
+
 
 def pareto_front(
-    problem: Problem, moments: tuple[JointMoments, ...], budget: int, seed: int = 0, smooth: bool = False
+    problem: Problem,
+    moments: tuple[JointMoments, ...],
+    budget: int,
+    seed: int = 0,
+    smooth: bool = False,
+    improved: Improved | None = None,
 ) -> Front:
     """Trade-off between the powers of the problem's sets of moments, after `budget` evaluations.
 
     moments: those of problem.table, in its order. smooth: also the least coefficient of fluctuation of the first.
+    improved: told of designs whose power, averaged over the sets, is the most so far; the last of them is in the front.
     Raises InputError if no feasible design was found.
     """
     require_extra("optimize", "pymoo")
     from pymoo.algorithms.moo.nsga2 import NSGA2
     from pymoo.core.problem import Problem as Vectorized
     from pymoo.optimize import minimize
+    from pymoo.util.nds.non_dominated_sorting import NonDominatedSorting
+
+    search = Search(problem, budget, improved)
+
+    def objectives(evaluation: Evaluation) -> FloatArray:
+        """To be made small, shape (n, objectives); any number where a design is not feasible."""
+        goals = [*-np.nan_to_num(evaluation.power).T]
+        if smooth:
+            goals.append(np.zeros(len(evaluation.x)))
+            batch, feasible = problem.batch(evaluation.x), evaluation.feasible
+            if feasible.any():
+                goals[-1][feasible] = fluctuation(take(batch, feasible), moments[0])
+        return np.column_stack(goals)
 
     class Population(Vectorized):  # type: ignore[misc]
         def __init__(self) -> None:
             low, high = problem.limits.search[: len(LENGTHS)].T
-            objectives = problem.table.sets + smooth
-            super().__init__(
-                n_var=len(LENGTHS), n_obj=objectives, n_ieq_constr=len(problem.constraints), xl=low, xu=high
-            )
+            count = problem.table.sets + smooth
+            super().__init__(n_var=len(LENGTHS), n_obj=count, n_ieq_constr=len(problem.constraints), xl=low, xu=high)
 
         def _evaluate(self, x: FloatArray, out: dict[str, Any]) -> None:
             evaluation = problem.evaluate(x)
-            goals = [*-np.nan_to_num(evaluation.power).T]
-            if smooth:
-                goals.append(np.zeros(len(x)))
-                batch, feasible = problem.batch(evaluation.x), evaluation.feasible
-                if feasible.any():
-                    goals[-1][feasible] = fluctuation(take(batch, feasible), moments[0])
-            out["F"] = np.column_stack(goals)
-            out["G"] = -evaluation.scaled_margins
+            search.note(evaluation.x, np.where(evaluation.feasible, evaluation.power.mean(axis=1), -np.inf))
+            out["F"], out["G"] = objectives(evaluation), -evaluation.scaled_margins
 
     result = minimize(Population(), NSGA2(pop_size=POPULATION), ("n_eval", budget), seed=seed, verbose=False)
     if result.X is None:
@@ -80,14 +100,13 @@ def pareto_front(
             f"no feasible {problem.template.linkage.kind} found in {budget} evaluations; "
             "loosen a limit, widen the design space or raise --budget"
         )
-    order = np.argsort(np.atleast_2d(result.F)[:, 0])
-    evaluation = problem.evaluate(np.atleast_2d(result.X)[order])
-    return Front(
-        evaluation.x,
-        evaluation.power,
-        np.atleast_2d(result.F)[order, -1] if smooth else None,
-        int(result.algorithm.evaluator.n_eval),
-    )
+    # NSGA-II thins out its front where it is crowded, whichever design it loses
+    x = np.unique(np.vstack([np.atleast_2d(result.X), search.best_x[: len(LENGTHS)]]), axis=0)
+    goals = objectives(problem.evaluate(x))
+    front = NonDominatedSorting().do(goals, only_non_dominated_front=True)
+    order = front[np.argsort(goals[front, 0])]
+    evaluation = problem.evaluate(x[order])
+    return Front(evaluation.x, evaluation.power, goals[order, -1] if smooth else None, search.evaluations)
 
 
 def fluctuation(design: Design, moments: JointMoments, points: int = 360) -> FloatArray:

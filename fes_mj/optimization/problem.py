@@ -13,15 +13,20 @@ from fes_mj.cycles import TURN_POINTS, Cycles, WorkTable, cycles, joint_speeds, 
 from fes_mj.design import Design
 from fes_mj.design_file import load_design
 from fes_mj.errors import InputError
-from fes_mj.geometry import grashof_margin
+from fes_mj.geometry import LEAST_CLEARANCE, grashof_margin
 from fes_mj.joints import JOINTS, PerJoint
 from fes_mj.moments import JointMoments
 from fes_mj.optimization.problem_file import DEFAULT, VARIED, Limits, depth_inside, load_limits
-from fes_mj.variables import component, replaced
+from fes_mj.reference_tricycle import ReferenceTricycle
+from fes_mj.units import RPM
+from fes_mj.variables import COMPONENTS, VARIABLES, component, replaced
 
 LENGTH_COUNT = len(VARIED) - 1  # all variables but the gear ratio, which comes last
 # A design below any feasible one, and each margin it was refused too early to have counts as ten scales.
-_INFEASIBLE, _UNKNOWN = -1e4, 10.0
+INFEASIBLE, _UNKNOWN = -1e4, 10.0
+_LEAST_OVERLAP = 0.1  # deg
+_HAIR = 1e-12  # keeps a number that is computed again on the same side of its limit
+_BOUNDS = np.array([(COMPONENTS[name].variable.low, COMPONENTS[name].variable.high) for name in VARIED[:-1]]).T
 
 
 class Constraint(NamedTuple):
@@ -99,9 +104,9 @@ class Problem:
             Constraint("crank_length", "m", True, limits.crank_min, 0.01),
             Constraint("rocker_length", "m", True, limits.rocker_min, 0.01),
             Constraint("ankle_to_pedal", "m", False, limits.foot_max, 0.01),
-            Constraint("pedal_arm", "m", True, 0.0, 0.01),
+            Constraint("lengths_inside", "m", True, 0.0, 0.01),
             Constraint("crank_shortest", "m", True, 0.0, 0.01),
-            Constraint("grashof", "m", True, limits.grashof_min, 0.01),
+            Constraint("grashof", "m", True, max(limits.grashof_min, LEAST_CLEARANCE), 0.01),
             Constraint("rocker_pivot_inside", "m", True, 0.0, 0.01),
             Constraint("crank_centre_inside", "m", True, 0.0, 0.01),
         )
@@ -112,14 +117,28 @@ class Problem:
         slack = self.limits.joint_rounding_deg
         (knee_low, knee_high), (hip_low, hip_high) = self.limits.knee_deg, self.limits.hip_deg
         return (
-            Constraint("leg_reach", "m", True, 0.0, 0.01),
+            Constraint("leg_reach", "m", True, LEAST_CLEARANCE, 0.01),
             Constraint("knee_min", "deg", True, knee_low - slack, 5.0),
             Constraint("knee_max", "deg", False, knee_high + slack, 5.0),
             Constraint("hip_min", "deg", True, hip_low - slack, 5.0),
             Constraint("hip_max", "deg", False, hip_high + slack, 5.0),
             *(Constraint(f"{joint}_speed", "deg/s", False, speed, 10.0) for joint, speed in self.joint_speed.items()),
-            Constraint("gear_ratio", "", False, self.limits.gear_ratio_max, 0.1),
+            *(Constraint(f"{joint}_overlap", "deg", True, _LEAST_OVERLAP, 5.0) for joint in JOINTS),
+            Constraint("gear_ratio_min", "", True, self.gear_ratios[0], 0.1),
+            Constraint("gear_ratio", "", False, self.gear_ratios[1], 0.1),
         )
+
+    @property
+    def gear_ratios(self) -> tuple[float, float]:
+        """Smallest and largest gear ratio: also a cadence that can be run."""
+        cadence = VARIABLES["cadence_rpm"]
+        slow, fast = (bound * RPM / self._cadence_of_one for bound in (cadence.low, cadence.high))
+        return slow * (1 + _HAIR), min(fast * (1 - _HAIR), self.limits.gear_ratio_max)
+
+    @property
+    def _cadence_of_one(self) -> float:
+        """At gear ratio 1, rad/s."""
+        return replace(self.template.linkage, gear_ratio=1.0).cadence
 
     @property
     def constraints(self) -> tuple[Constraint, ...]:
@@ -146,23 +165,21 @@ class Problem:
         Designs whose lengths already violate a constraint are not turned.
         """
         design = self.batch(x)
-        lengths = self._lengths(design)
+        lengths = self._lengths(design, x[:, :LENGTH_COUNT])
         sound = np.all(_margins(self.geometry, lengths) >= 0, axis=1)
         turn = cycles(take(design, sound), self.table, self.points) if sound.any() else None
         motion = np.full((len(x), len(self.motion)), np.nan)
         power = np.full((len(x), self.table.sets), np.nan)
-        gear_ratio = (
-            x[:, LENGTH_COUNT].copy() if x.shape[1] > LENGTH_COUNT else np.full(len(x), self.limits.gear_ratio_max)
-        )
+        gear_ratio = x[:, LENGTH_COUNT].copy() if x.shape[1] > LENGTH_COUNT else np.full(len(x), self.gear_ratios[1])
         if turn:
-            # cadence and joint speeds at gear ratio 1
-            cadence = replace(self.template.linkage, gear_ratio=1.0).cadence
+            # cadence and joint speeds are those at gear ratio 1
+            cadence = self._cadence_of_one
             speeds = turn.travel.map(lambda travel: np.degrees(travel) * cadence / (2 * np.pi))
             if x.shape[1] == LENGTH_COUNT:
                 fastest = np.minimum(*(self.joint_speed[joint] / speeds[joint] for joint in JOINTS))
-                gear_ratio[sound] = np.fmin(fastest * (1 - 1e-12), self.limits.gear_ratio_max)
+                gear_ratio[sound] = np.fmin(fastest * (1 - _HAIR), self.gear_ratios[1])
             power[sound] = turn.work * (cadence / (2 * np.pi) * gear_ratio[sound, None])
-            motion[sound] = _motion_values(turn, speeds, gear_ratio[sound])
+            motion[sound] = _motion_values(turn, self.table.measured_on, speeds, gear_ratio[sound])
         values = np.hstack([lengths, motion])
         scales = np.array([constraint.scale for constraint in self.constraints])
         filled = np.column_stack([x[:, :LENGTH_COUNT], gear_ratio])
@@ -170,7 +187,7 @@ class Problem:
 
     def merit(self, evaluation: Evaluation) -> FloatArray:
         """What is maximised, shape (n,): W if feasible; every infeasible design ranks below, by its violation."""
-        return np.where(evaluation.feasible, self.objective(evaluation.power), _INFEASIBLE - evaluation.violation)
+        return np.where(evaluation.feasible, self.objective(evaluation.power), INFEASIBLE - evaluation.violation)
 
     def objective(self, power: FloatArray) -> FloatArray:
         """Power of the first set of moments less `caution` standard deviations of the gain over the baseline, W."""
@@ -185,15 +202,15 @@ class Problem:
             if margin < 0
         ]
 
-    def _lengths(self, design: Design) -> FloatArray:
-        """Values of the constraints on lengths, shape (n, 8)."""
+    def _lengths(self, design: Design, x: FloatArray) -> FloatArray:
+        """Values of the constraints on lengths, shape (n, 8); x: the lengths, shape (n, 9)."""
         linkage, polygon = design.linkage, self.limits.polygon
         others = np.stack([np.abs(linkage.pivot_to_crank), linkage.coupler, linkage.rocker])
         columns = (
             linkage.crank,
             linkage.rocker,
             linkage.foot,
-            linkage.pedal_arm,
+            np.minimum(x - _BOUNDS[0], _BOUNDS[1] - x).min(axis=1),
             others.min(axis=0) - linkage.crank,
             grashof_margin(design),
         )
@@ -203,10 +220,24 @@ class Problem:
         )
 
 
-def _motion_values(turn: Cycles, speeds: PerJoint[FloatArray], gear_ratio: FloatArray) -> FloatArray:
-    """Values of the constraints on the turn, in their order, shape (n, 8)."""
+def _motion_values(
+    turn: Cycles, reference: ReferenceTricycle, speeds: PerJoint[FloatArray], gear_ratio: FloatArray
+) -> FloatArray:
+    """Values of the constraints on the turn, in their order, shape (n, 11)."""
     ranges = [np.degrees(side[joint]) for joint in JOINTS for side in (turn.low, turn.high)]
-    return np.column_stack([turn.reach, *ranges, *(speeds[joint] * gear_ratio for joint in JOINTS), gear_ratio])
+    rates = (speeds[joint] * gear_ratio for joint in JOINTS)
+    overlaps = (_overlap(joint, turn, reference) for joint in JOINTS)
+    return np.column_stack([turn.reach, *ranges, *rates, *overlaps, gear_ratio, gear_ratio])
+
+
+def _overlap(joint: str, turn: Cycles, reference: ReferenceTricycle) -> FloatArray:
+    """How far a joint comes into the range of the moments, from whichever side, deg, shape (n,); not above 0: never."""
+    low, high = turn.low[joint], turn.high[joint]
+    (bottom, top), middle = reference.ranges[joint], (low + high) / 2
+    shift = reference.around(joint, middle) - middle
+    overlap = np.degrees(np.minimum(high + shift - bottom, top - low - shift))
+    # the angle beside a dead centre is too sharp for the parabola that found its extreme
+    return np.where(turn.never_inside[joint], np.minimum(overlap, 0.0), overlap)
 
 
 def _margins(constraints: tuple[Constraint, ...], values: FloatArray) -> FloatArray:

@@ -8,10 +8,10 @@ import numpy as np
 
 from fes_mj.arrays import FloatArray
 from fes_mj.errors import InputError
-from fes_mj.optimization.problem import Problem
+from fes_mj.optimization.problem import INFEASIBLE, Problem
 from fes_mj.optimization.problem_file import VARIED
 
-Progress: TypeAlias = Callable[[int, float], None]  # evaluations so far, best merit
+Improved: TypeAlias = Callable[[FloatArray, float], None]  # a feasible design, shape (10,), and its merit
 _SAMPLE = 2000
 
 
@@ -33,13 +33,16 @@ class Result:
 
 
 class Search:
-    """Evaluates populations for a method, counts, remembers the best. Raises BudgetSpentError at the budget's end."""
+    """Evaluates populations for a method, counts, remembers the best. Raises BudgetSpentError at the budget's end.
 
-    def __init__(self, problem: Problem, budget: int, progress: Progress | None = None) -> None:
+    improved: told of every feasible design that is better than all before.
+    """
+
+    def __init__(self, problem: Problem, budget: int, improved: Improved | None = None) -> None:
         self.problem, self.budget, self.evaluations = problem, budget, 0
         self.best_x, self.best = np.full(len(VARIED), np.nan), -np.inf
         self._history: list[tuple[int, float]] = []
-        self._progress = progress
+        self._improved = improved
 
     def __call__(self, x: FloatArray) -> FloatArray:
         """Merit of each row of x, shape (n, 9) or (n, 10); see Problem.evaluate."""
@@ -59,9 +62,9 @@ class Search:
         if merit[top] > self.best:
             self.best, self.best_x = float(merit[top]), x[top].copy()
             self._history.append((self.evaluations + top + 1, self.best))
+            if self._improved and self.best > INFEASIBLE:
+                self._improved(self.best_x, self.best)
         self.evaluations += len(merit)
-        if self._progress:
-            self._progress(self.evaluations, self.best)
 
     def result(self) -> Result:
         """The best design so far. Raises InputError, saying what stood in the way, if none was feasible."""
@@ -108,4 +111,4 @@ def violations_text(problem: Problem, x: FloatArray) -> str | None:
         f"{v['name']} is {v['value']:.4g} {v['unit']}".rstrip() + f" (limit {v['limit']:.4g})"
         for v in problem.violations(evaluation)
     )
-    return ", ".join(parts) or "it does not close over the whole turn"
+    return ", ".join(parts) or "the thigh swings through 180 deg or more"

@@ -2,13 +2,19 @@
 
 import json
 import math
+import os
+import subprocess
 from pathlib import Path
 
 import pytest
 
 import fes_mj
 from fes_mj.cli.app import run
+from fes_mj.design_file import design_toml
+from fes_mj.errors import UnstableError
+from fes_mj.optimization.findings import Findings
 from fes_mj.optimization.problem_file import DEFAULT
+from fes_mj.optimization.search import Result
 
 QUICK = ["--budget", "6000", "--searches", "1", "--seed", "2"]
 
@@ -104,6 +110,139 @@ def test_bad_input_is_one_message(arguments: list[str], said: str, capsys: pytes
     assert said in captured.err.replace("\n", " ")
     assert "Traceback" not in captured.err
     assert captured.out == ""
+
+
+def found_with(path: Path) -> list[str]:
+    """The arguments after `fes_mj` of the command in a design file, as a shell reads them."""
+    line = path.read_text().splitlines()[1]
+    shown = subprocess.run(["bash", "-c", f"printf '%s\\0' {line[2:]}"], check=True, capture_output=True).stdout
+    program, *arguments = os.fsdecode(shown).split("\0")[:-1]
+    assert program == "fes_mj"
+    return arguments
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        [],
+        ["--group", "p1p3", "--speeds-of", "d2", "--start", "d2", "--caution", "1", "--knee-speed-limit", "170"],
+        ["--problem", "it's a *problem*\x07.toml", "--moments", "-m.csv"],
+        ["--method", "nsga-ii", "--smooth"],
+    ],
+)
+def test_the_command_in_the_file_gives_the_same_bytes_again(
+    given: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Design file, model, front, page and JSON; also when it is run over its own files."""
+    pytest.importorskip("jinja2")
+    pytest.importorskip("pymoo")
+    monkeypatch.chdir(tmp_path)
+    Path("it's a *problem*\x07.toml").write_text(DEFAULT.read_text().replace("hip_deg = [85.0", "hip_deg = [86.0"))
+    Path("-m.csv").write_text("crank_angle_deg,knee_Nm,hip_Nm\n0,5,1\n60,25,2\n180,5,-1\n270,-5,0\n")
+    given = [f"--moments={word}" if word == "-m.csv" else word for word in given if word != "--moments"]
+    out, more = "the best.toml", ["--report", "page.html", "--json"]
+    assert run(["optimize", "cdt", *given, *QUICK, "-o", out, *more]) == 0
+    shown, files = capsys.readouterr().out, {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+    again = found_with(Path(out))
+    assert run([*again, *more]) == 0
+    assert capsys.readouterr().out == shown
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == files
+    assert json.loads(shown)["command"].startswith("fes_mj optimize cdt")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--start", "b.toml", "-o", "b.toml"], "b.toml: cannot write the design: it would replace b.toml"),
+        (["--speeds-of", "b.toml", "-o", "./b.toml"], "b.toml: cannot write the design: it would replace b.toml"),
+        (["--problem", "p.toml", "-o", "p.toml"], "p.toml: cannot write the design: it would replace p.toml"),
+        (["--problem", "p.toml", "-o", "link.toml"], "link.toml: cannot write the design: it would replace p.toml"),
+        (["--start", "page.html", "--report", "page.html"], "page.html: cannot write the page: it would replace"),
+        (["--moments", "m-front.csv", "-o", "m.toml", "--method", "nsga-ii"], "m-front.csv: cannot write the front"),
+        (["-o", "theirs.toml"], "theirs.xml: cannot write the model: a file that fes_mj did not write"),
+    ],
+)
+def test_no_output_replaces_an_input_or_a_file_of_somebody_else(
+    arguments: list[str], said: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    pytest.importorskip("pymoo")
+    monkeypatch.chdir(tmp_path)
+    Path("b.toml").write_text(design_toml(fes_mj.load_design("d2")))
+    Path("p.toml").write_text(DEFAULT.read_text())
+    Path("link.toml").symlink_to("p.toml")
+    Path("page.html").write_text("mine")
+    Path("theirs.xml").write_text("<mujoco/>")
+    Path("m-front.csv").write_text("crank_angle_deg,knee_Nm,hip_Nm\n0,5,1\n60,25,2\n")
+    before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+    assert run(["optimize", "cdt", *arguments, *QUICK]) == 2
+    assert said in capsys.readouterr().err
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
+@pytest.mark.parametrize(
+    ("step", "error", "code"),
+    [
+        ("fes_mj.optimization.winner.assess", UnstableError("it broke down"), 1),
+        ("fes_mj.optimization.winner.to_rider", fes_mj.InputError("no sample"), 2),
+        ("fes_mj.optimization.page.page_html", OSError(28, "No space left on device"), 2),
+        ("fes_mj.simulation.export.mjcf_text", fes_mj.InputError("MuJoCo cannot build the model"), 2),
+    ],
+)
+def test_what_was_found_stays_when_a_later_step_fails(
+    step: str,
+    error: Exception,
+    code: int,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    pytest.importorskip("jinja2")
+
+    def fail(*_: object, **__: object) -> None:
+        raise error
+
+    out = tmp_path / "best.toml"
+    command = ["optimize", "cdt", *QUICK, "-o", str(out), "--report", str(tmp_path / "page.html")]
+    with monkeypatch.context() as broken:
+        broken.setattr(step, fail)
+        assert run(command) == code
+    assert str(error.args[-1]) in capsys.readouterr().err
+    best = out.read_bytes()
+    assert run(command) == 0
+    assert out.read_bytes() == best
+
+
+def test_ctrl_c_says_what_was_found_and_the_same_command_goes_on(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out, finish = tmp_path / "best.toml", Findings.finish
+    command = ["optimize", "cdt", "--budget", "3000", "--searches", "3", "--seed", "2", "-o", str(out), "--json"]
+    assert run(command) == 0
+    undisturbed, best = capsys.readouterr().out, out.read_bytes()
+    out.unlink()
+
+    def interrupted(findings: Findings, search: int, result: Result) -> None:
+        finish(findings, search, result)
+        if search == 1:
+            raise KeyboardInterrupt
+
+    with monkeypatch.context() as broken:
+        broken.setattr(Findings, "finish", interrupted)
+        assert run(command) == 130
+    captured = capsys.readouterr()
+    power = fes_mj.quasi_static(fes_mj.load_design(out), fes_mj.load_moments("p1p2")).power_mean
+    assert f"interrupted; the best so far, {power:.2f} W, is saved in {out}; the same command" in captured.err
+    assert captured.out == ""
+    assert sorted(path.name for path in (tmp_path / "best.search").glob("search-*")) == [
+        "search-0.json",
+        "search-1.json",
+    ]
+    assert run([*command, "--group", "p1p3"]) == 2
+    assert "(different: command, problem)" in capsys.readouterr().err
+    assert run(command) == 0
+    assert capsys.readouterr().out == undisturbed
+    assert out.read_bytes() == best
+    assert not (tmp_path / "best.search").exists()
 
 
 def test_a_problem_that_nothing_solves(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -17,13 +17,20 @@ def test_the_front_is_feasible_and_nobody_on_it_is_dominated() -> None:
 
     both = tuple(fes_mj.load_moments(group) for group in ("p1p2", "p1p3"))
     problem = replace(problem_of("d1"), table=WorkTable.of(*both))
-    front = pareto_front(problem, both, budget=5000, seed=1, smooth=True)
+    seen: list[list[float]] = []
+    front = pareto_front(
+        problem, both, budget=5000, seed=1, smooth=True, improved=lambda x, power: seen.append([power, *x])
+    )
     assert problem.evaluate(front.x).feasible.all()
     assert front.fluctuation is not None
     goals = np.column_stack([front.power, -front.fluctuation])
     better = np.all(goals[:, None] >= goals, axis=2) & np.any(goals[:, None] > goals, axis=2)
     assert not better.any()
     assert len(front.x) > 10
+    powers = [power for power, *_ in seen]
+    assert powers == sorted(powers)
+    top = int(np.argmax(front.power.mean(axis=1)))
+    np.testing.assert_allclose([front.power[top].mean(), *front.x[top]], seen[-1], rtol=1e-12)
 
 
 def test_fluctuation_of_a_known_curve(moments: fes_mj.JointMoments) -> None:

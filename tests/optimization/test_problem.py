@@ -1,13 +1,19 @@
 """The problem: constraints against independent measures, feasibility of the printed designs."""
 
+import math
 from dataclasses import replace
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 import fes_mj
+from fes_mj.cli.options import crank_speed
 from fes_mj.cycles import joint_speeds
+from fes_mj.design_file import design_toml
 from fes_mj.geometry import require_assembly
+from fes_mj.optimization.optimize import optimize
 from fes_mj.optimization.problem import LENGTH_COUNT, Problem
 from tests.optimization.conftest import SIX_BARS, TABLE, problem_of
 
@@ -64,6 +70,41 @@ def test_verdicts_agree_with_one_design_at_a_time(name: str) -> None:
     for row in np.flatnonzero(evaluation.margins[:, unable] < 0)[:5]:
         with pytest.raises(fes_mj.AssemblyError):
             require_assembly(problem.design(evaluation.x[row], "one"))
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {},
+        {"grashof_min": -0.1, "crank_min": 0.0, "rocker_min": 0.0, "gear_ratio_max": 100.0},
+        {"knee_deg": (-300.0, 300.0), "hip_deg": (-300.0, 300.0)},
+        {"hip_deg": (118.0, 170.0)},
+        {"polygon": 3 * np.array([-1 - 1j, 1 - 1j, 1 + 1j, -1 + 1j]), "hip_deg": (-300.0, 300.0)},
+    ],
+)
+@pytest.mark.parametrize("name", ["r1", "d1"])
+def test_whatever_is_feasible_is_accepted_by_the_other_commands(
+    name: str, changes: dict[str, Any], tmp_path: Path
+) -> None:
+    """As a file, by statics, as a model and at its own cadence; both random designs and those that a search drives
+    to the limits.
+    """
+    problem, moments, file = problem_of(name), fes_mj.load_moments("p1p2"), tmp_path / "found.toml"
+    low, high = problem.limits.search.T.copy()
+    if "crank_min" in changes:
+        low[[2, 7, 8]] = 0.0
+        high[9] = 10.0
+    limits = replace(problem.limits, **changes, search=np.column_stack([low, high]))
+    problem = replace(problem, limits=limits, joint_speed=problem.joint_speed.map(lambda speed: 4 * speed))
+    x = np.random.default_rng(0).uniform(low, high, (20_000, LENGTH_COUNT + 1))
+    nine, ten = problem.evaluate(x[:, :LENGTH_COUNT]), problem.evaluate(x)
+    driven = [result.x for result in optimize(problem, "differential-evolution", searches=2, budget=8000)]
+    for found in [*nine.x[nine.feasible][:20], *ten.x[ten.feasible][:20], *driven]:
+        file.write_text(design_toml(problem.design(found, "found")))
+        design = fes_mj.load_design(file)
+        cadence = crank_speed(None, design)
+        assert math.isfinite(fes_mj.quasi_static(design, moments, points=120).power_mean)
+        fes_mj.build_mjcf(design, cadence=cadence, timestep=0.001)
 
 
 def test_a_population_is_its_members() -> None:

@@ -1,0 +1,149 @@
+"""What searches have found so far, kept beside their design file: a run that was stopped loses nothing and can go on.
+
+Each search is a function of the problem and its own seed. So one that is finished is never done again, and one that
+was stopped is done again from its start; whatever happens in between, the end is the same to the last bit.
+"""
+
+import dataclasses
+import glob
+import hashlib
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from fes_mj.arrays import FloatArray
+from fes_mj.design_file import design_toml
+from fes_mj.errors import InputError
+from fes_mj.files import json_text, make_folder, read_json, write_text
+from fes_mj.optimization.problem import Problem
+from fes_mj.optimization.search import Result
+from fes_mj.text import printable
+
+_UNFINISHED = "\nBest so far, of a search that is not finished."
+
+
+class Findings:
+    """The design file `out`, kept at the best design from the first feasible one on, and BEST.search beside it.
+
+    In the folder BEST.search: recipe.json, all that the outcome depends on; best-N.json, the best of search N where it
+    was the best of all; search-N.json, the result of a finished search. A design file that was there before is replaced
+    only by the final one; until then the best is BEST.search/best.toml. Several processes may call `improve` at once.
+    """
+
+    def __init__(self, out: Path, problem: Problem, origin: str, recipe: dict[str, Any]) -> None:
+        """origin: comment of the design file. recipe: what the outcome depends on beside the problem, as JSON."""
+        self.out, self.folder = out, out.with_suffix(".search")
+        self._problem, self._origin = problem, origin
+        self._recipe = recipe | {"problem": digest(problem)}
+        self._known = -np.inf  # merit of the best design, as far as this process knows
+        self.so_far = out
+
+    @contextmanager
+    def searching(self) -> Iterator[None]:
+        """Claim the folder for searches; it is gone afterwards if they found nothing."""
+        self._claim()
+        try:
+            yield
+        finally:
+            if not self.best:
+                self.remove()
+
+    def _claim(self) -> None:
+        """Make the folder, or go on with what is in it. Raises InputError if that belongs to another search."""
+        recipe, earlier = self.folder / "recipe.json", self.out.exists()
+        make_folder(self.folder, "what is found")
+        if recipe.exists():
+            theirs = read_json(recipe, "record of a search")
+            different = [key for key, value in self._recipe.items() if theirs.get(key) != value]
+            if different and self.best:
+                raise InputError(
+                    f"{self.folder}: this folder holds what another search has found (different: "
+                    f"{', '.join(different)}), which is not finished; its command was: {theirs.get('command')}. "
+                    "Run that to its end, or delete the folder, or give another -o"
+                )
+            earlier = earlier if different else bool(theirs.get("earlier"))
+        elif any(not path.name.startswith(".") for path in self.folder.iterdir()):
+            raise InputError(
+                f"{self.folder}: searches are recorded in this folder; move what is in it, or give another -o"
+            )
+        write_text(recipe, json_text(self._recipe | {"earlier": earlier}))
+        self.so_far = self.folder / "best.toml" if earlier else self.out
+        if self.best:
+            self._known = self.best[0]
+            self._publish(self.best[1], "resumed")
+
+    @property
+    def best(self) -> tuple[float, list[float]] | None:
+        """Merit and variables of the best design so far; None before there is any."""
+        found = [_read(path, "merit", "x") for path in self.folder.glob("best-*.json")]
+        return max(found, default=None)
+
+    def improve(self, search: int, x: FloatArray, merit: float) -> None:
+        """Keep a feasible design, shape (10,), found by a search, if it is the best of all."""
+        if merit <= self._known:
+            return
+        write_text(self.folder / f"best-{search}.json", json_text({"merit": merit, "x": x}))
+        published = None
+        # another process may put its design in place between our looking and our writing; the last to write looks again
+        while (best := self.best) and best != published:
+            self._publish(best[1], str(search))
+            self._known, published = best[0], best
+
+    def finish(self, search: int, result: Result) -> None:
+        """Keep the result of a finished search."""
+        self.improve(search, result.x, result.merit)
+        write_text(self.folder / f"search-{search}.json", json_text(vars(result)))
+
+    def finished(self) -> dict[int, Result]:
+        """Results of the finished searches, by their numbers."""
+        names = [field.name for field in dataclasses.fields(Result)]
+        found = {}
+        for path in self.folder.glob("search-*.json"):
+            x, merit, evaluations, history = _read(path, *names)
+            found[int(path.stem.partition("-")[2])] = Result(np.array(x), merit, evaluations, np.array(history))
+        return found
+
+    def write(self, text: str, path: Path) -> None:
+        """Put a whole file in place by way of the folder: a kill leaves nothing beside the design file."""
+        write_text(self.folder / path.name, text)
+        (self.folder / path.name).replace(path)
+
+    def remove(self) -> None:
+        """Remove the folder, as all is finished."""
+        for pattern in ("recipe.json", "best*", "search-*.json", f"{glob.escape(self.out.stem)}*", ".*"):
+            for path in self.folder.glob(pattern):
+                path.unlink(missing_ok=True)
+        if not any(self.folder.iterdir()):
+            self.folder.rmdir()
+
+    def _publish(self, x: list[float], by: str) -> None:
+        design = self._problem.design(np.array(x), printable(self.out.stem))
+        beside = self.folder / f"best-{by}.toml"
+        write_text(beside, design_toml(design, self._origin + _UNFINISHED))
+        beside.replace(self.so_far)
+
+
+def digest(value: Any) -> str:
+    """SHA-256 of all that a value holds, numbers to the last bit: nested data classes, arrays, tuples, plain values."""
+    if isinstance(value, np.ndarray):
+        content = value.tobytes()
+    elif isinstance(value, (list, tuple)):
+        content = "".join(map(digest, value)).encode()
+    elif dataclasses.is_dataclass(value):
+        content = "".join(digest(getattr(value, field.name)) for field in dataclasses.fields(value)).encode()
+    elif hasattr(value, "__dict__"):
+        content = "".join(map(digest, vars(value).values())).encode()
+    else:
+        content = repr(value).encode()
+    return hashlib.sha256(content).hexdigest()
+
+
+def _read(path: Path, *keys: str) -> tuple[Any, ...]:
+    content = read_json(path, "record of a search")
+    try:
+        return tuple(content[key] for key in keys)
+    except KeyError:
+        raise InputError(f"{path}: this is no record of a search; delete its folder to begin anew") from None
