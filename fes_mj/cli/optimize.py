@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 from contextlib import nullcontext
 from importlib.metadata import version
 from pathlib import Path
@@ -149,7 +150,10 @@ def _write(design: Design, outcome: Outcome, origin: str, findings: Findings, op
     from fes_mj.simulation.mjcf import build_mjcf
 
     paths = {"design_file": findings.out, **{key: path for key, (path, _) in _beside(findings.out, options).items()}}
-    texts = {"design_file": lambda: design_toml(design, origin), "model_file": lambda: mjcf_text(build_mjcf(design))}
+    texts: dict[str, Callable[[], str]] = {
+        "design_file": lambda: design_toml(design, origin),
+        "model_file": lambda: mjcf_text(build_mjcf(design)),
+    }
     if outcome.front:
         texts["front_file"] = outcome.front.as_csv
     for key, text in texts.items():
