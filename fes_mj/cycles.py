@@ -7,8 +7,8 @@ the loops it draws in the moment-angle plane: a sum over its reversals, where no
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache
-from typing import Any, TypeAlias
+from functools import cached_property, lru_cache
+from typing import TypeAlias
 
 import numpy as np
 from scipy.integrate import cumulative_trapezoid
@@ -114,9 +114,8 @@ class Cycles:
     leg has left before it is stretched or folded flat; negative if it lacks.
     low, high, travel: by joint, shape (designs,), rad: smallest and largest angle, and the way made in a turn.
     reversals: by joint, shape (designs,), how often it turns round. work: shape (designs, sets), J a turn and leg.
-    outside_share: shape (designs,), of the turn in which a joint is beyond the moments' range. outside_sd: shape
-    (designs,), J, of the work, by not knowing the moments there (extrapolation.extrapolation). never_inside: by joint,
-    shape (designs,), whether it is beyond all the turn, so that the work says nothing.
+    outside_sd: shape (designs,), J, of the work, by not knowing the moments beyond their range
+    (extrapolation.extrapolation). angles: of the joints in blocks of designs, rad, shape (designs, points) each.
     """
 
     turns: BoolArray
@@ -127,9 +126,20 @@ class Cycles:
     travel: PerJoint[FloatArray]
     reversals: PerJoint[IntArray]
     work: FloatArray
-    outside_share: FloatArray
     outside_sd: FloatArray
-    never_inside: PerJoint[BoolArray]
+    angles: list[PerJoint[FloatArray]]
+    reference: ReferenceTricycle
+
+    @cached_property
+    def outside(self) -> tuple[FloatArray, PerJoint[BoolArray]]:
+        """Share of the turn in which a joint is beyond the moments' range, and by joint whether it is all the turn.
+
+        Shape (designs,) each; one that never enters has a work that says nothing. Optimisers do not ask for it.
+        """
+        found = [(outside_share(each), never_inside(each)) for each in (beyond(self.reference, a) for a in self.angles)]
+        share = np.concatenate([each for each, _ in found])
+        never = PerJoint.of(lambda joint: np.concatenate([each[joint] for _, each in found]))
+        return np.where(self.turns, share, np.nan), never
 
 
 def cycles(design: Design, table: WorkTable, points: int = TURN_POINTS) -> Cycles:
@@ -140,19 +150,18 @@ def cycles(design: Design, table: WorkTable, points: int = TURN_POINTS) -> Cycle
     crank_angle = np.linspace(0, 2 * np.pi, points, endpoint=False)
     size = max(1, BLOCK_POSITIONS // points)
     parts = [
-        _turn(take(design, slice(start, start + size)), crank_angle, table.measured_on)
-        for start in range(0, batch_size(design), size)
+        _turn(take(design, slice(start, start + size)), crank_angle) for start in range(0, batch_size(design), size)
     ]
-    reach, swing, share, *never = (np.concatenate(each) for each in list(zip(*parts, strict=True))[:-1])
+    reach, swing = (np.concatenate([part[i] for part in parts]) for i in (0, 1))
     hindered = obstacles(design, reach, swing)
     turns = ~np.logical_or.reduce([*hindered.values()])
     first_rows, work = size * np.arange(len(parts)), np.zeros((len(reach), table.sets))
-    work[~turns] = share[~turns] = np.nan
+    work[~turns] = np.nan
     reference, variance = table.measured_on, np.zeros(len(reach))
 
     def of_joint(joint: str) -> tuple[FloatArray, FloatArray, FloatArray, IntArray]:
         """Smallest and largest angle, travel and reversals of a joint; its work is added to the others'."""
-        found = [part[-1][joint] for part in parts]
+        found = [part[3][joint] for part in parts]
         rows = np.concatenate([each[0] + first for each, first in zip(found, first_rows, strict=True)])
         angle, sign = (np.concatenate([each[i] for each in found]) for i in (1, 2))
         low, high = np.full((2, len(reach)), np.nan)
@@ -171,7 +180,8 @@ def cycles(design: Design, table: WorkTable, points: int = TURN_POINTS) -> Cycle
 
     low, high, travel, count = (PerJoint(*each) for each in zip(*PerJoint.of(of_joint), strict=True))
     outside_sd = np.where(turns, np.sqrt(variance), np.nan)
-    return Cycles(turns, hindered, reach, low, high, travel, count, work, share, outside_sd, PerJoint(*never))
+    angles = [part[2] for part in parts]
+    return Cycles(turns, hindered, reach, low, high, travel, count, work, outside_sd, angles, reference)
 
 
 def joint_speeds(design: Design, table: WorkTable) -> PerJoint[float]:
@@ -184,10 +194,10 @@ def joint_speeds(design: Design, table: WorkTable) -> PerJoint[float]:
 Reversals: TypeAlias = tuple[IntArray, FloatArray, FloatArray]
 
 
-def _turn(design: Design, crank_angle: FloatArray, reference: ReferenceTricycle) -> tuple[Any, ...]:
-    """Of one block: reach of the leg, swing of the thigh, share outside the moments' range, whether the knee and the
-    hip never enter it, reversals by joint.
-    """
+def _turn(
+    design: Design, crank_angle: FloatArray
+) -> tuple[FloatArray, FloatArray, PerJoint[FloatArray], PerJoint[Reversals]]:
+    """Reach of the leg, swing of the thigh, angles and reversals of knee and hip of one block."""
     points = positions(design, crank_angle)
     pedal = np.atleast_2d(np.abs(points["pedal"]))
     thigh, shank = (np.ravel(length) for length in (design.rider.thigh, design.knee_to_pedal))
@@ -195,9 +205,7 @@ def _turn(design: Design, crank_angle: FloatArray, reference: ReferenceTricycle)
     reach = np.broadcast_to(reach, batch_size(design))  # where seat, mass or gear ratio are all that varies
     closes = (reach > 0)[:, None]
     angles = joint_angles(design, points).map(lambda angle: np.where(closes, angle, 0.0))  # or it stays at rest
-    outside = beyond(reference, angles)
-    swing = np.ptp(angles.hip, axis=1)
-    return reach, swing, outside_share(outside), *never_inside(outside), angles.map(reversals)
+    return reach, np.ptp(angles.hip, axis=1), angles, angles.map(reversals)
 
 
 def reversals(angle: FloatArray) -> Reversals:

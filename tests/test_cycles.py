@@ -59,7 +59,7 @@ def test_any_single_variable_makes_a_batch(name: str, count: int) -> None:
     for row in (0, count - 1):
         alone = cycles(replaced(design, {name: float(values[row])}), table)
         assert together.work[row] == pytest.approx(alone.work[0], rel=1e-12)
-        assert together.outside_share[row] == pytest.approx(alone.outside_share[0])
+        assert together.outside[0][row] == pytest.approx(alone.outside[0][0])
     assert together.turns.shape == together.reach.shape == together.outside_sd.shape == (count,)
 
 
@@ -81,7 +81,7 @@ def test_random_designs_in_a_batch_fare_as_alone(name: str, moments: fes_mj.Join
     for row in range(count):
         alone = replaced(design, {key: float(column[row, 0]) for key, column in values.items()})
         hindered = [reason for reason, which in together.obstacles.items() if which[row]]
-        outside = [joint for joint, which in together.never_inside.items() if which[row]]
+        outside = [joint for joint, which in together.outside[1].items() if which[row]]
         assert bool(hindered) != together.turns[row]
         found = solved(alone, moments)
         if isinstance(found, AssemblyError):
@@ -96,7 +96,7 @@ def test_random_designs_in_a_batch_fare_as_alone(name: str, moments: fes_mj.Join
             per_work = found.cadence / (2 * np.pi)
             power, *deviations = together.work[row] * per_work
             assert power == pytest.approx(found.power_mean, rel=2e-4, abs=2e-3)
-            assert together.outside_share[row] == pytest.approx(found.extrapolation.share, abs=4e-3)
+            assert together.outside[0][row] == pytest.approx(found.extrapolation.share, abs=4e-3)
             assert together.outside_sd[row] * per_work == pytest.approx(found.extrapolation.sd, rel=2e-3, abs=5e-3)
             deviation = np.hypot(np.linalg.norm(deviations), together.outside_sd[row] * per_work)
             assert deviation == pytest.approx(found.power_sd, rel=2e-3)
@@ -112,8 +112,8 @@ def test_a_seat_angle_a_turn_away_is_the_same_seat(name: str) -> None:
         cycles(replace(design, linkage=replace(design.linkage, seat_angle=angle)), table)
         for angle in (seat, seat - 2 * np.pi)
     )
-    assert one.outside_share[0] > 0
-    assert one.outside_share == pytest.approx(other.outside_share, abs=1e-9)
+    assert one.outside[0][0] > 0
+    assert one.outside[0] == pytest.approx(other.outside[0], abs=1e-9)
     assert one.outside_sd == pytest.approx(other.outside_sd, rel=1e-9)
     assert one.work == pytest.approx(other.work, abs=1e-9)
 

@@ -83,7 +83,7 @@ def _static(design: Design, values: Columns, moments: JointMoments, count: int) 
         "why": why,
         "power_mean_W": power[:, 0],
         "power_sd_W": np.nan if certain else deviation,
-        "extrapolated_share": turn.outside_share,
+        "extrapolated_share": turn.outside[0],
         "work_per_turn_J": work[:, 0],
     }
     for joint in JOINTS:
@@ -97,7 +97,7 @@ def _static(design: Design, values: Columns, moments: JointMoments, count: int) 
 
 def _reasons(turn: Cycles, rpm: NDArray[Any]) -> Mapping[str, NDArray[np.bool_]]:
     """Why `fes_mj static` refuses a design: reason -> which."""
-    never = {f"the {joint} never enters the range of the moments": which for joint, which in turn.never_inside.items()}
+    never = {f"the {joint} never enters the range of the moments": which for joint, which in turn.outside[1].items()}
     low, high = VARIABLES["cadence_rpm"].low, VARIABLES["cadence_rpm"].high
     return turn.obstacles | never | {f"its cadence is not within {low:g} to {high:g} rpm": (rpm < low) | (rpm > high)}
 
