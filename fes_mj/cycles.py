@@ -134,7 +134,7 @@ class Cycles:
     def outside(self) -> tuple[FloatArray, PerJoint[BoolArray]]:
         """Share of the turn in which a joint is beyond the moments' range, and by joint whether it is all the turn.
 
-        Shape (designs,) each; one that never enters has a work that says nothing. Optimisers do not ask for it.
+        Shape (designs,) each; one that never enters has a work that says nothing. Found out when it is asked for.
         """
         found = [(outside_share(each), never_inside(each)) for each in (beyond(self.reference, a) for a in self.angles)]
         share = np.concatenate([each for each, _ in found])

@@ -237,7 +237,7 @@ def _overlap(joint: str, turn: Cycles, reference: ReferenceTricycle) -> FloatArr
     shift = reference.around(joint, middle) - middle
     overlap = np.degrees(np.minimum(high + shift - bottom, top - low - shift))
     # the angle beside a dead centre is too sharp for the parabola that found its extreme
-    return np.where(turn.never_inside[joint], np.minimum(overlap, 0.0), overlap)
+    return np.where(turn.outside[1][joint], np.minimum(overlap, 0.0), overlap)
 
 
 def _margins(constraints: tuple[Constraint, ...], values: FloatArray) -> FloatArray:
