@@ -1,5 +1,6 @@
 """Designs, moments and a study that many tests share."""
 
+import signal
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,11 @@ import fes_mj
 from fes_mj.design_file import DESIGNS
 from fes_mj.moments import GROUPS
 from fes_mj.sweep.sweep import Sweep
+
+# Tests that run in the background or under nohup ignore these; the processes that they start must not.
+signal.signal(signal.SIGINT, signal.default_int_handler)
+if hasattr(signal, "SIGHUP"):
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 # The same examples in every run: a failure can be repeated. `--hypothesis-profile default` looks further.
 settings.register_profile("fes_mj", derandomize=True, deadline=None, max_examples=50)
