@@ -20,7 +20,7 @@ from fes_mj.design import Design
 from fes_mj.errors import InputError
 from fes_mj.extrapolation import beyond, drift_area, never_inside, outside_share
 from fes_mj.fourier import fourier
-from fes_mj.geometry import SCAN, obstacles
+from fes_mj.geometry import SCAN, obstacles, span_limits
 from fes_mj.joints import PerJoint
 from fes_mj.kinematics import joint_angles, positions
 from fes_mj.moments import JointMoments
@@ -200,8 +200,8 @@ def _turn(
     """Reach of the leg, swing of the thigh, angles and reversals of knee and hip of one block."""
     points = positions(design, crank_angle)
     pedal = np.atleast_2d(np.abs(points["pedal"]))
-    thigh, shank = (np.ravel(length) for length in (design.rider.thigh, design.knee_to_pedal))
-    reach = np.minimum(thigh + shank - pedal.max(axis=1), pedal.min(axis=1) - np.abs(thigh - shank))
+    shortest, longest = span_limits(design, ("thigh", "shank"))
+    reach = np.minimum(longest - pedal.max(axis=1), pedal.min(axis=1) - shortest)
     reach = np.broadcast_to(reach, batch_size(design))  # where seat, mass or gear ratio are all that varies
     closes = (reach > 0)[:, None]
     angles = joint_angles(design, points).map(lambda angle: np.where(closes, angle, 0.0))  # or it stays at rest

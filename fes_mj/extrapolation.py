@@ -153,13 +153,13 @@ def _likely_cause(design: Design, reference: ReferenceTricycle) -> str:
         other = replace(design, linkage=replace(design.linkage, **changes))
         with suppress(AssemblyError):
             require_assembly(other)
-            found.append((_beyond(other, reference), cause))
-    beyond, cause = min(found, key=lambda each: each[0], default=(1.0, ""))
-    return f". Likely cause: {cause}" if beyond < 1 else ""
+            found.append((_worst(other, reference), cause))
+    worst, cause = min(found, key=lambda each: each[0], default=(1.0, ""))
+    return f". Likely cause: {cause}" if worst < 1 else ""
 
 
-def _beyond(design: Design, reference: ReferenceTricycle) -> float:
-    """Largest excess of a joint, in half ranges; NaN for a linkage that does not close."""
+def _worst(design: Design, reference: ReferenceTricycle) -> float:
+    """Largest excess of a joint beyond the moments' range, in half ranges."""
     return max(
         float(np.abs(reference.excess(joint, angle)).max()) / reference.half_range(joint)
         for joint, angle in _angles(design).items()

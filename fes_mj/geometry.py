@@ -68,8 +68,8 @@ def _of_pedal(design: Design, pedal: ComplexArray) -> tuple[FloatArray, FloatArr
     distance = np.broadcast_to(np.abs(pedal), (batch_size(design), len(SCAN)))
     ends = np.stack([distance.argmin(axis=1), distance.argmax(axis=1)])
     spans, angles = np.take_along_axis(distance, ends.T, axis=1).T, SCAN[ends]
-    lengths = [np.ravel(length) for length in (design.rider.thigh, design.knee_to_pedal)]
-    margins = np.stack([spans[0] - np.abs(lengths[0] - lengths[1]), lengths[0] + lengths[1] - spans[1]])
+    shortest, longest = span_limits(design, ("thigh", "shank"))
+    margins = np.stack([spans[0] - shortest, longest - spans[1]])
     for end, sign in enumerate((-1, 1)):  # every local extreme that could be the one
         height = sign * distance
         peak = (height >= np.roll(height, 1, axis=1)) & (height > np.roll(height, -1, axis=1))
@@ -99,7 +99,7 @@ def _extreme(design: Design, angle: FloatArray, sign: int) -> FloatArray:
 
 
 def _clearance(design: Design, links: tuple[str, str], spans: FloatArray, angles: FloatArray) -> Clearance:
-    shortest, longest = _reach(design, links)
+    shortest, longest = span_limits(design, links)
     margins = np.stack([spans[0] - shortest, longest - spans[1]])
     worst = np.argmin(margins, axis=0)[None]
     margin, span, angle = (
@@ -108,8 +108,8 @@ def _clearance(design: Design, links: tuple[str, str], spans: FloatArray, angles
     return Clearance(links, margin, span, angle % (2 * np.pi))
 
 
-def _reach(design: Design, links: tuple[str, str]) -> tuple[FloatArray, FloatArray]:
-    """Shortest and longest distance that two links span, m, shape (designs,)."""
+def span_limits(design: Design, links: tuple[str, str]) -> tuple[FloatArray, FloatArray]:
+    """Shortest and longest distance that two links can span, m, shape (designs,)."""
     first, second = (np.ravel(design.link_lengths[link]) for link in links)
     return np.abs(first - second), first + second
 
@@ -149,7 +149,7 @@ def require_assembly(design: Design) -> None:
     for links, margin, span, angle in clearances(design, points):
         for reason in (reason for reason, holds in _shortfalls(links, margin).items() if holds[0]):
             start, end, _ = (name.replace("_", " ") for name in DYADS[links])
-            shortest, longest = (float(length[0]) for length in _reach(design, links))
+            shortest, longest = (float(length[0]) for length in span_limits(design, links))
             where = f"at crank angle {np.degrees(angle[0]):.1f} deg"
             apart = (
                 f"{start} and {end} are {span[0]:.4f} m apart there, the two links reach from {shortest:.4f} to "

@@ -1,5 +1,6 @@
 """Where a result comes from: versions, command, inputs. No date: the same run gives the same bytes."""
 
+import dataclasses
 import hashlib
 import platform
 import shlex
@@ -8,6 +9,8 @@ from collections.abc import Iterable
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from fes_mj.text import printable
 
@@ -32,3 +35,18 @@ def _name(path: Path) -> str:
     """The file's place among the shipped data, or its bare name: two designs differ only by their folder."""
     data = Path(__file__).parent / "data"
     return str(path.relative_to(data)) if path.is_relative_to(data) else printable(path.name)
+
+
+def digest(value: Any) -> str:
+    """SHA-256 of all that a value holds, numbers to the last bit: nested data classes, arrays, tuples, plain values."""
+    if isinstance(value, np.ndarray):
+        content = value.tobytes()
+    elif isinstance(value, (list, tuple)):
+        content = "".join(map(digest, value)).encode()
+    elif dataclasses.is_dataclass(value):
+        content = "".join(digest(getattr(value, field.name)) for field in dataclasses.fields(value)).encode()
+    elif hasattr(value, "__dict__"):
+        content = "".join(map(digest, vars(value).values())).encode()
+    else:
+        content = repr(value).encode()
+    return hashlib.sha256(content).hexdigest()

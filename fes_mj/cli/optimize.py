@@ -14,7 +14,7 @@ from cyclopts import Parameter
 
 from fes_mj.cli.process import interruption_code
 from fes_mj.cli.search_options import SearchOptions, shell_word
-from fes_mj.console import errors, output, print_table, progress_bar, say
+from fes_mj.console import errors, print_table, progress_bar, say
 from fes_mj.design_file import design_toml, load_design
 from fes_mj.files import json_text, require_replaceable, require_writable, write_text
 from fes_mj.moments import GROUPS
@@ -78,12 +78,7 @@ def optimize(
     except KeyboardInterrupt as error:
         if not (findings and findings.best):
             raise
-        power = problem.evaluate(np.array([findings.best[1]])).power[0, 0]
-        errors.print(
-            f"fes_mj: interrupted; the best so far, {power:.2f} W, is saved in {printable(str(findings.so_far))}; "
-            "the same command goes on from there",
-            soft_wrap=True,
-        )
+        _print_saved(problem, findings.best[1], findings.so_far)
         return interruption_code(error)
     if findings:
         findings.remove()
@@ -94,6 +89,16 @@ def optimize(
         if report:
             say(f"report: {report}")
     return 0 if winner.case.agrees else 1
+
+
+def _print_saved(problem: Problem, x: list[float], path: Path) -> None:
+    """Say what an interrupted search leaves behind."""
+    power = problem.evaluate(np.array([x])).power[0, 0]
+    errors.print(
+        f"fes_mj: interrupted; the best so far, {power:.2f} W, is saved in {printable(str(path))}; "
+        "the same command goes on from there",
+        soft_wrap=True,
+    )
 
 
 def _check_files(out: Path | None, report: Path | None, options: SearchOptions) -> None:
@@ -174,9 +179,7 @@ def _print(winner: Winner, outcome: Outcome) -> None:
         cells = [(f"{number}", *(f"{power:.2f}" for power in front.power[number])) for number in keep]
         print_table(f"Front, {len(keep)} of {len(front.x)} designs", ("design", *(f"{g}, W" for g in GROUPS)), cells)
     if winner.gain and winner.gain.mean > 0 and not winner.gain.beyond_error:
-        output.print(
-            "note: the gain is within the error bar of the recovered moments; --caution 1 looks for a surer one"
-        )
+        say("note: the gain is within the error bar of the recovered moments; --caution 1 looks for a surer one")
     if winner.reversals.knee > 2:
         say("note: the knee swings more than once per turn of the crank; can the muscles follow?")
     say("note: the design space is an assumption, see --problem")

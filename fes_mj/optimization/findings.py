@@ -6,7 +6,6 @@ was stopped is done again from its start; whatever happens in between, the end i
 
 import dataclasses
 import glob
-import hashlib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -20,6 +19,7 @@ from fes_mj.errors import InputError
 from fes_mj.files import json_text, make_folder, read_json, write_text
 from fes_mj.optimization.problem import Problem
 from fes_mj.optimization.search import Result
+from fes_mj.provenance import digest
 from fes_mj.text import printable
 
 _UNFINISHED = "\nBest so far, of a search that is not finished."
@@ -124,21 +124,6 @@ class Findings:
         beside = self.folder / f"best-{by}.toml"
         write_text(beside, design_toml(design, self._origin + _UNFINISHED))
         beside.replace(self.so_far)
-
-
-def digest(value: Any) -> str:
-    """SHA-256 of all that a value holds, numbers to the last bit: nested data classes, arrays, tuples, plain values."""
-    if isinstance(value, np.ndarray):
-        content = value.tobytes()
-    elif isinstance(value, (list, tuple)):
-        content = "".join(map(digest, value)).encode()
-    elif dataclasses.is_dataclass(value):
-        content = "".join(digest(getattr(value, field.name)) for field in dataclasses.fields(value)).encode()
-    elif hasattr(value, "__dict__"):
-        content = "".join(map(digest, vars(value).values())).encode()
-    else:
-        content = repr(value).encode()
-    return hashlib.sha256(content).hexdigest()
 
 
 def _read(path: Path, *keys: str) -> tuple[Any, ...]:

@@ -1,6 +1,5 @@
 """Sweeps: a study evaluated in chunks, each a Parquet file that appears whole; what is there is not done again."""
 
-import hashlib
 import json
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
@@ -11,11 +10,11 @@ from typing import Any
 
 import numpy as np
 
-from fes_mj.arrays import FloatArray
 from fes_mj.design_file import design_toml
 from fes_mj.errors import InputError, require_extra
 from fes_mj.files import make_folder, read_json, remove_leftovers, replacing, require_writable, write_text
 from fes_mj.parallel import HERE, Workers, run_tasks
+from fes_mj.provenance import digest
 from fes_mj.sweep.evaluation import column_types, evaluate
 from fes_mj.sweep.study import Study
 
@@ -40,14 +39,14 @@ class Sweep:
     def manifest(self) -> dict[str, Any]:
         """All that the results depend on, as JSON, of long arrays a digest. The order of the grid is part of it."""
         study = self.study
-        moments = {name: _digest(each.crank_angle, each.knee, each.hip) for name, each in study.moments.items()}
+        moments = {name: digest((each.crank_angle, each.knee, each.hip)) for name, each in study.moments.items()}
         return {
             "fes-mj": version("fes-mj"),
             "analysis": study.analysis,
             "chunk": study.chunk,
             "timestep": study.timestep,
             "grid": study.grid,
-            "sample": {name: _digest(values) for name, values in study.sample.items()},
+            "sample": {name: digest(values) for name, values in study.sample.items()},
             "designs": {name: design_toml(design) for name, design in study.designs.items()},
             "moments": moments,
         }
@@ -61,7 +60,7 @@ class Sweep:
 
     @cached_property
     def _mark(self) -> str:
-        return hashlib.sha256(json.dumps(self.manifest).encode()).hexdigest()
+        return digest(json.dumps(self.manifest))
 
     def table(self, chunk: int) -> Any:
         """Rows of a chunk as a pyarrow table; None unless its file is there, undamaged, and this chunk's."""
@@ -166,7 +165,3 @@ class Sweep:
 def _is_nobodys(path: Path) -> bool:
     """Whether a file is hidden or a file browser's, so that a folder with nothing else is empty to its user."""
     return path.name.startswith(".") or path.name.lower() in NOBODYS_FILES
-
-
-def _digest(*arrays: FloatArray) -> str:
-    return hashlib.sha256(b"".join(array.astype("<f8").tobytes() for array in arrays)).hexdigest()
