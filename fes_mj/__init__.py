@@ -8,7 +8,8 @@ if TYPE_CHECKING:
     from fes_mj.design import Design as Design, Linkage as Linkage, Rider as Rider
     from fes_mj.design_file import load_design as load_design
     from fes_mj.errors import AssemblyError as AssemblyError, InputError as InputError
-    from fes_mj.moments import JointMoments as JointMoments, load_moments as load_moments
+    from fes_mj.moments import JointMoments as JointMoments
+    from fes_mj.moments_file import load_moments as load_moments
     from fes_mj.simulation.bench import simulate as simulate
     from fes_mj.simulation.mjcf import build_mjcf as build_mjcf
     from fes_mj.statics import quasi_static as quasi_static
@@ -19,7 +20,8 @@ _PUBLIC = {
     "design": ("Design", "Linkage", "Rider"),
     "design_file": ("load_design",),
     "errors": ("AssemblyError", "InputError"),
-    "moments": ("JointMoments", "load_moments"),
+    "moments": ("JointMoments",),
+    "moments_file": ("load_moments",),
     "simulation.bench": ("simulate",),
     "simulation.mjcf": ("build_mjcf",),
     "statics": ("quasi_static",),

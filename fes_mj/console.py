@@ -21,6 +21,11 @@ def say(text: str, style: str | None = None) -> None:
     output.print(printable(text), style=style, soft_wrap=True)
 
 
+def complain(text: str) -> None:
+    """Print a warning on standard error."""
+    errors.print(printable(f"warning: {text}"), style="yellow", soft_wrap=True)
+
+
 def conclude(ok: bool, result: str, more: str) -> None:
     """Print what came out, in colour, and more about it."""
     output.print(Text.assemble((result, GOOD if ok else BAD), printable(more)), soft_wrap=True)

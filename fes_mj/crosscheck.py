@@ -1,5 +1,6 @@
 """Dynamic against static: one measured case, what is compared in it, the limits, the verdict."""
 
+import math
 from dataclasses import dataclass, field
 from functools import cached_property
 from importlib.metadata import version
@@ -13,6 +14,7 @@ from fes_mj.checks import LEAST_POWER, Check, check
 from fes_mj.design import Design
 from fes_mj.extrapolation import require_motion
 from fes_mj.files import csv_text
+from fes_mj.geometry import FROM_TOP, degrees_from_top
 from fes_mj.inverse_dynamics import body_loads
 from fes_mj.joints import PerJoint
 from fes_mj.kinematics import Motion
@@ -64,9 +66,9 @@ class Case:
         """Kinematics at crank angles, rad."""
         return kinematics.solve(self.design, crank_angle)
 
-    def joint_moment(self, motion: Motion) -> PerJoint[FloatArray]:
-        """Knee and hip moment along a motion, N m."""
-        return self.torque.along(motion, self.cadence)
+    def joint_moment(self, motion: Motion, leg: str = "") -> PerJoint[FloatArray]:
+        """Knee and hip moment along a motion of the leg with this name prefix, N m."""
+        return self.torque.of(leg).along(motion, self.cadence)
 
     def loads(self, motion: Motion, mass_scale: float = 1.0, gravity: float = GRAVITY) -> dict[str, Load]:
         """Weight and inertia along a motion."""
@@ -99,12 +101,32 @@ class Case:
         """The quasi-static turn. Raises AssemblyError if the linkage does not close."""
         return self.static_at(TURN_POINTS)
 
-    def static_at(self, points: int) -> QuasiStatic:
-        """The quasi-static turn at another number of crank angles."""
-        require_motion(self.design, self.moments.measured_on)
+    def static_at(self, points: int, leg: str = "") -> QuasiStatic:
+        """The quasi-static turn at another number of crank angles, or of the leg with this name prefix."""
+        torque = self.torque.of(leg)
+        require_motion(self.design, torque.reference)
         motion = self.motion(np.linspace(0, 2 * np.pi, points, endpoint=False))
-        joint_moment = self.joint_moment(motion)
-        return QuasiStatic(motion, self.torque, self.cadence, joint_moment, *self.equilibrium(motion, joint_moment))
+        joint_moment = self.joint_moment(motion, leg)
+        return QuasiStatic(motion, torque, self.cadence, joint_moment, *self.equilibrium(motion, joint_moment))
+
+    @cached_property
+    def statics(self) -> tuple[QuasiStatic, ...]:
+        """The quasi-static turn of every leg whose moments are its own."""
+        if self.moments.left is None or self.legs == 1:
+            return (self.static,)
+        return self.static, self.static_at(TURN_POINTS, "left_")
+
+    @property
+    def static_power_mean(self) -> float:
+        """Quasi-static mean crank power of one leg, on average of the legs, W."""
+        return float(np.mean([each.power_mean for each in self.statics]))
+
+    @property
+    def power_sd(self) -> float | None:
+        """Its standard deviation, W: the errors of two files of moments are independent. None where it is not known."""
+        deviations = [each.power_sd for each in self.statics]
+        known = [each for each in deviations if each is not None]
+        return math.hypot(*known) / len(known) if len(known) == len(deviations) else None
 
     @cached_property
     def simulation(self) -> Simulation:
@@ -123,36 +145,41 @@ class Case:
         inertia_power = self.cadence * np.sqrt(np.mean((massive - self.static.crank_moment) ** 2))
         return float(min(1.0, INERTIA_POWER_RMS / inertia_power))
 
-    def crank_moment(self, motion: Motion, mass_scale: float = 1.0, gravity: float = GRAVITY) -> FloatArray:
-        """Exact crank moment of one leg at constant speed, N m, without MuJoCo (inverse_dynamics.crank_moment)."""
-        return virtual_work(motion, self.joint_moment(motion), self.loads(motion, mass_scale, gravity))
+    def crank_moment(
+        self, motion: Motion, mass_scale: float = 1.0, gravity: float = GRAVITY, leg: str = ""
+    ) -> FloatArray:
+        """Exact crank moment of a leg at constant speed, N m, without MuJoCo (inverse_dynamics.crank_moment)."""
+        return virtual_work(motion, self.joint_moment(motion, leg), self.loads(motion, mass_scale, gravity))
 
     def reference_power(self, run: Simulation | None = None, mass_scale: float | None = None) -> FloatArray:
         """Exact crank power of all legs at the crank angles of a run, W; mass_scale 0 is the quasi-static curve."""
         run = run or self.simulation
         scale = run.mass_scale if mass_scale is None else mass_scale
-        legs = (self.crank_moment(self.motion(run.crank_angle - leg.lag), scale, run.gravity) for leg in run.legs)
-        return np.asarray(self.cadence * np.sum([*legs], axis=0))
+        legs = [
+            self.crank_moment(self.motion(run.crank_angle - leg.lag), scale, run.gravity, leg.prefix)
+            for leg in run.legs
+        ]
+        return np.asarray(self.cadence * np.sum(legs, axis=0))
 
     # What is concluded.
 
     @property
     def power_scale(self) -> float:
         """What the relative limits refer to: the mean power of one leg, but no less than LEAST_POWER, W."""
-        return max(abs(self.static.power_mean), LEAST_POWER)
+        return max(abs(self.static_power_mean), LEAST_POWER)
 
     @property
     def relative_difference(self) -> float:
         """Mean power, dynamic minus static, relative to static; NaN for a static mean of zero."""
-        dynamic, static = self.simulation.power_mean, self.static.power_mean
+        dynamic, static = self.simulation.power_mean, self.static_power_mean
         return (dynamic - static) / abs(static) if static else np.nan
 
     @property
     def difference_text(self) -> str:
         """The same for people: in percent, or in W where the static mean is too small for it to mean anything."""
-        if abs(self.static.power_mean) >= LEAST_POWER:
+        if abs(self.static_power_mean) >= LEAST_POWER:
             return f"{100 * self.relative_difference:+.4f} %"
-        return f"{self.simulation.power_mean - self.static.power_mean:+.4f} W"
+        return f"{self.simulation.power_mean - self.static_power_mean:+.4f} W"
 
     def check(self, name: str, value: float) -> Check:
         """A measured value of this case beside its limit."""
@@ -164,7 +191,7 @@ class Case:
         run, power = self.simulation, self.power_scale
         duration = len(run.crank_angle) * run.timestep
         return (
-            self.check("mean_power", abs(run.power_mean - self.static.power_mean) / power),
+            self.check("mean_power", abs(run.power_mean - self.static_power_mean) / power),
             self.check("loop_gap", run.loop_gap_max),
             self.check("cadence_ripple", run.cadence_ripple),
             self.check("inverse_dynamics", self.rms_per_leg(run)),
@@ -189,7 +216,8 @@ class Case:
             "work_per_turn_J": 2 * np.pi * run.power_mean / run.cadence,
             "knee_range_deg": run.joint_range_deg.knee,
             "hip_range_deg": run.joint_range_deg.hip,
-            "static_power_mean_W": self.static.power_mean,
+            "power_sd_W": self.power_sd,
+            "static_power_mean_W": self.static_power_mean,
             "relative_difference": self.relative_difference,
             "loop_gap_max_m": run.loop_gap_max,
             "cadence_ripple": run.cadence_ripple,
@@ -209,6 +237,7 @@ class Case:
         return csv_text(
             {
                 "crank_angle_deg": np.degrees(run.crank_angle),
+                FROM_TOP: degrees_from_top(self.design, run.crank_angle),
                 "crank_power_W": run.power,
                 "inverse_dynamics_power_W": self.reference_power(),
                 "quasi_static_power_W": self.reference_power(mass_scale=0.0),

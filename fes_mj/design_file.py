@@ -39,19 +39,22 @@ def _read(path: Path) -> Design:
     linkage, rider = content.section("linkage"), content.section("rider")
     kind, sex = linkage.choice("kind", ARCHITECTURES), rider.choice("sex", DE_LEVA, Rider.sex)
     words = ("kind",) if kind == "trt" else ("kind", "branch")
-    numbers = _values(linkage, kind, *words)
+    numbers = read_values(linkage, kind, *words)
     branch = linkage.choice("branch", BRANCHES, Linkage.branch)
     return Design(
-        printable(path.stem), Linkage(kind, **numbers, branch=branch), Rider(sex=sex, **_values(rider, kind, "sex"))
+        printable(path.stem), Linkage(kind, **numbers, branch=branch), Rider(sex=sex, **read_values(rider, kind, "sex"))
     )
 
 
-def _values(section: Section, kind: str, *words: str) -> dict[str, Any]:
-    """Attributes in SI and radians of one table, every key checked; `words` are its keys that are no numbers."""
-    known = _variables(section.name, kind)
-    section.only((*known, *words))
+def read_values(section: Section, kind: str, *others: str, owner: str = "", partial: bool = False) -> dict[str, Any]:
+    """Attributes in SI and radians of a table, every key checked; `others` are its keys that somebody else reads.
+
+    owner: "linkage" or "rider", whose variables they are, if that is not the table's name. partial: nothing is needed.
+    """
+    known = _variables(owner or section.name, kind)
+    section.only((*known, *others))
     for symbol, variable in known.items():
-        if variable.needed:
+        if variable.needed and not partial:
             section.require([symbol], f"a {kind} needs {variable.allowed}")
     return {v.attribute: _value(section, v) for symbol, v in known.items() if symbol in section.content}
 

@@ -11,8 +11,11 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any, NamedTuple, NoReturn
 
+import numpy as np
+
+from fes_mj.arrays import FloatArray
 from fes_mj.errors import InputError
 
 TEMPORARY = ".fes_mj-"  # how the names of temporary files begin
@@ -144,22 +147,52 @@ def read_json(path: Path, what: str) -> dict[str, Any]:
     return content
 
 
-def read_csv(path: Path, what: str, columns: Sequence[str]) -> Iterator[tuple[int, list[float]]]:
-    """Line number and finite numbers of every row of a CSV file with this header; blank lines are passed over.
+class Table(NamedTuple):
+    """Columns of a text table: the text above its header line, the names in that, the numbers asked for.
 
+    lines: line number of each row. columns: by name, shape (rows,).
+    """
+
+    preamble: str
+    header: list[str]
+    lines: list[int]
+    columns: dict[str, FloatArray]
+
+
+def read_columns(path: Path, what: str, columns: Sequence[str], *, after: str = "", commas: bool = True) -> Table:
+    """The named columns of a table of numbers, found by its header line; blank lines are passed over.
+
+    after: the line above the header, if that is not the file's first. commas: between the columns, or blanks and tabs.
     Raises InputError naming file, line, column and value.
     """
-    lines = read_text(path, what).splitlines()
-    header = [cell.strip() for cell in lines[0].split(",")] if lines else []
-    if header != [*columns]:
-        raise InputError(f"{path}: line 1 is {','.join(header)!r}, the header must be {','.join(columns)!r}")
-    for number, row in enumerate(csv.reader(lines[1:]), 2):
-        if row and len(row) != len(columns):
-            raise InputError(
-                f"{path}: line {number} has {len(row)} values; {len(columns)} are needed: {','.join(columns)}"
-            )
+    text = read_text(path, what).splitlines()
+    start = next((number for number, line in enumerate(text, 1) if line.strip().lower() == after), 0) if after else 0
+    if after and not start:
+        raise InputError(f"{path}: the {what} has no line {after!r}, below which the columns begin")
+
+    def cells(line: str) -> list[str]:
+        row = next(csv.reader([line])) if commas else line.split()
+        return [cell.strip() for cell in row] if line.strip() else []
+
+    while start < len(text) and not text[start].strip():
+        start += 1
+    header = cells(text[start]) if start < len(text) else []
+    for column in columns:
+        if column not in header:
+            known = ", ".join(header) or "nothing"
+            raise InputError(f"{path}: line {start + 1}: there is no column {column!r}; the header names {known}")
+        if header.count(column) > 1:
+            raise InputError(f"{path}: line {start + 1}: the header names the column {column!r} twice")
+    places, lines, rows = [header.index(column) for column in columns], [], []
+    for number, line in enumerate(text[start + 1 :], start + 2):
+        row = cells(line)
+        if row and len(row) != len(header):
+            raise InputError(f"{path}: line {number} has {len(row)} values; the header names {len(header)} columns")
         if row:
-            yield number, [_cell(path, number, *pair) for pair in zip(columns, row, strict=True)]
+            lines.append(number)
+            rows.append([_cell(path, number, *pair) for pair in zip(columns, (row[at] for at in places), strict=True)])
+    values = np.array(rows, float).reshape(len(rows), len(columns)).T
+    return Table("\n".join(text[:start]), header, lines, dict(zip(columns, values, strict=True)))
 
 
 def _cell(path: Path, line: int, column: str, cell: str) -> float:

@@ -1,4 +1,4 @@
-"""The Fourier series that carries the recovered moments' uncertainty. Needs numpy alone: statics stay instant."""
+"""Periodic curves over the crank angle as Fourier series. Needs numpy alone: statics stay instant."""
 
 from typing import Any
 
@@ -8,6 +8,14 @@ from fes_mj.arrays import FloatArray
 
 HARMONICS = 24  # beyond the 24th a kernel of length 0.5 has less than 1e-12 of its variance
 TERMS = 2 * HARMONICS + 1  # of one joint
+WIDEST_GAP = np.radians(60)  # six samples a turn tell the first harmonics; a wider gap is bridged by a straight line
+_BRIDGE = np.radians(30)  # between the points of such a bridge: closer ones would make the curve ring
+_ORDER = np.concatenate([np.zeros(1), np.tile(np.arange(1, HARMONICS + 1), 2)]) / HARMONICS
+# How much roughness (the mean square of the fourth derivative, in units of the highest harmonic's) weighs against the
+# mean square miss: what the samples determine is not touched, what they leave open is as smooth as can be.
+_ROUGHNESS = 1e-7
+_BLOCK = 20_000  # samples
+_PASSES = 2  # the second takes off what rounding left in the first
 
 
 def fourier(crank_angle: Any) -> FloatArray:
@@ -17,3 +25,42 @@ def fourier(crank_angle: Any) -> FloatArray:
     turned[...] = np.exp(1j * angle)[..., None]
     np.cumprod(turned, axis=-1, out=turned)  # e^(ika) for k = 1, 2, ...: ten times faster than as many sines
     return np.concatenate([np.ones((*angle.shape, 1)), turned.real, turned.imag], axis=-1)
+
+
+def fit(angle: FloatArray, values: FloatArray) -> FloatArray:
+    """Coefficients, shape (TERMS, curves), of the smooth periodic curves through samples, or among noisy dense ones.
+
+    angle: rad, shape (n,), in any order and by any whole turns. values: shape (n, curves). Least squares in which all
+    samples weigh the same; gaps wider than WIDEST_GAP are bridged by straight lines.
+    """
+    bridge = _bridges(angle, values)
+    angle, values = np.concatenate([angle, bridge[0]]), np.concatenate([values, bridge[1]])
+    blocks = [slice(start, start + _BLOCK) for start in range(0, len(angle), _BLOCK)]  # a day of samples fits in memory
+    roughness, found = np.diag(_ROUGHNESS * _ORDER**8), np.zeros((TERMS, values.shape[1]))
+    normal = sum(terms.T @ terms for terms in (fourier(angle[block]) for block in blocks)) / len(angle) + roughness
+    for _ in range(_PASSES):
+        missed = -roughness @ found
+        for block in blocks:
+            terms = fourier(angle[block])
+            missed += terms.T @ (values[block] - terms @ found) / len(angle)
+        found += np.linalg.solve(normal, missed)
+    return found
+
+
+def gaps(angle: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Angles in order within [0, 2 pi] and the way from each to the next, round the circle; rad."""
+    inside = np.sort(np.mod(angle, 2 * np.pi))
+    return inside, np.diff(inside, append=inside[0] + 2 * np.pi)
+
+
+def _bridges(angle: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Points on straight lines across the wide gaps, and the curves' values there."""
+    inside, (known, ways) = np.mod(angle, 2 * np.pi), gaps(angle)
+    points, heights = [np.empty(0)], [np.empty((0, values.shape[1]))]
+    for number in np.flatnonzero(ways > WIDEST_GAP):
+        start, end = known[number], known[(number + 1) % len(known)]
+        first, last = (values[inside == each].mean(axis=0) for each in (start, end))
+        part = np.arange(_BRIDGE, ways[number] - _BRIDGE / 2, _BRIDGE) / ways[number]
+        points.append(start + part * ways[number])
+        heights.append(first + part[:, None] * (last - first))
+    return np.concatenate(points), np.concatenate(heights)

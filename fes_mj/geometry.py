@@ -22,8 +22,10 @@ LEAST_CLEARANCE = 1e-4
 # it within 2 deg, in which the pedal moves by a few millimetres: less than _NEAR, within which extremes are exact.
 SCAN = np.linspace(0.0, 2 * np.pi, 120, endpoint=False)
 _NEAR = 0.01  # m
+CRANK_ZERO = "the crank points backwards (+x)"  # where every crank angle that is printed begins
+FROM_TOP = "crank_angle_from_tdc_deg"  # the name of such angles in files
 LARGEST_SWING = np.pi  # rad, of the thigh: more than any hip can do
-_ITERATIONS = 10
+_ITERATIONS = 20  # halving the steps of SCAN, where Newton does not help, leaves 5e-8 rad
 
 
 class Clearance(NamedTuple):
@@ -168,6 +170,17 @@ def require_assembly(design: Design) -> None:
             f"{design.name}: the thigh swings through {np.degrees(swing):.0f} deg; no hip moves by "
             f"{np.degrees(LARGEST_SWING):.0f} deg or more"
         )
+
+
+def top_dead_centre(design: Design) -> float:
+    """Crank angle at which the leg is bent most, the pedal nearest to the hip, rad within [0, 2 pi)."""
+    nearest = int(np.abs(positions(design, SCAN)["pedal"]).argmin())
+    return float(_extreme(design, SCAN[[nearest]], -1)[0, 0]) % (2 * np.pi)
+
+
+def degrees_from_top(design: Design, crank_angle: FloatArray) -> FloatArray:
+    """Crank angles (rad from the crank pointing backwards) from top dead centre, deg within [0, 360)."""
+    return np.asarray(np.degrees(crank_angle - top_dead_centre(design)) % 360)
 
 
 def joint_ranges(design: Design, crank_angle: FloatArray = FULL_TURN) -> FloatArray:

@@ -13,6 +13,7 @@ from fes_mj.arrays import ComplexArray, FloatArray
 from fes_mj.design import BODIES, Design
 from fes_mj.errors import InputError
 from fes_mj.extrapolation import NO_MORE, Extrapolation, extrapolation, require_motion
+from fes_mj.geometry import CRANK_ZERO, top_dead_centre
 from fes_mj.joints import PerJoint
 from fes_mj.kinematics import Jet, Motion
 from fes_mj.moments import JointMoments
@@ -141,6 +142,9 @@ class QuasiStatic:
             "extrapolated_work_share": self.extrapolation.work_share,
             "extrapolation_sd_W": self.extrapolation.sd,
             "notes": self.notes,
+            "warnings": [each._asdict() for each in self.moments.misreadings],
+            "crank_angle_zero": CRANK_ZERO,
+            "top_dead_centre_deg": float(np.degrees(top_dead_centre(self.design))),
         }
 
 

@@ -21,6 +21,7 @@ INK, FAINT = "#20242c", "#5a606c"
 
 # The paper's x runs backwards. Pictures show it to the left, so that riders face right, as in the video.
 X_LABEL = "x, m (backwards; the rider faces right)"
+CRANK_LABEL = "crank angle, deg (0: crank backwards)"
 
 STYLE: dict[Any, Any] = {
     "font.family": "sans-serif",

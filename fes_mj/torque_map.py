@@ -27,6 +27,11 @@ class TorqueMap:
     def __init__(self, moments: JointMoments) -> None:
         self.moments, self.reference = moments, moments.measured_on
 
+    def of(self, name: str) -> "TorqueMap":
+        """The map of the leg that a name or its prefix (design.LEGS) belongs to: the left leg may have its own."""
+        own = self.moments.of_leg(name)
+        return self if own is self.moments else torque_map(own)
+
     @cached_property
     def table(self) -> PerJoint[FloatArray]:
         """Moment at every crank angle of GRID, N m."""

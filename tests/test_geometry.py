@@ -16,13 +16,15 @@ from fes_mj.geometry import (
     DYADS,
     LEAST_CLEARANCE,
     clearances,
+    degrees_from_top,
     grashof_margin,
     joint_ranges,
     require_assembly,
+    top_dead_centre,
     transmission_angles,
 )
-from fes_mj.kinematics import FULL_TURN
-from fes_mj.moments import load_moments
+from fes_mj.kinematics import FULL_TURN, joint_angles, positions
+from fes_mj.moments_file import load_moments
 from fes_mj.reference_tricycle import PAPER_TRICYCLE
 from tests.linkages import designs
 
@@ -131,3 +133,18 @@ def _turns(design: Design) -> bool:
     except AssemblyError:
         return False
     return True
+
+
+def test_top_dead_centre_is_where_the_leg_is_bent_most() -> None:
+    """In closed form for the four-bar, by a fine search for the others."""
+    trt = load_design("trt")
+    assert top_dead_centre(trt) == pytest.approx(np.angle(-trt.linkage.crank_centre) % (2 * np.pi))
+    turn = np.linspace(0, 2 * np.pi, 100_000, endpoint=False)
+    for name in ("r1", "r2", "d1", "d2"):
+        design = load_design(name)
+        top = top_dead_centre(design)
+        knee, least = (joint_angles(design, positions(design, at)).knee for at in (turn, np.array([top])))
+        assert abs(top - turn[knee.argmin()]) < 1e-3  # R2's minimum is flat
+        assert least[0] <= knee.min() + 1e-12
+        after = degrees_from_top(design, np.array([top_dead_centre(design) + 1e-9, 0.0]))
+        assert after == pytest.approx([0, -np.degrees(top_dead_centre(design)) % 360], abs=1e-6)

@@ -17,7 +17,7 @@ from fes_mj.design import ONE_LEG, Design
 from fes_mj.design_file import load_design
 from fes_mj.files import json_text, write_text
 from fes_mj.kinematics import positions
-from fes_mj.moments import load_moments
+from fes_mj.moments_file import load_moments
 from fes_mj.provenance import provenance
 from fes_mj.simulation.bench import joint_drives
 from fes_mj.simulation.mjcf import build_mjcf

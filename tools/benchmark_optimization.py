@@ -23,7 +23,7 @@ from fes_mj.cycles import TURN_POINTS, WorkTable, cycles, joint_speeds
 from fes_mj.design import ONE_LEG, Design
 from fes_mj.design_file import load_design
 from fes_mj.files import json_text, write_text
-from fes_mj.moments import load_moments
+from fes_mj.moments_file import load_moments
 from fes_mj.optimization.problem import Problem
 from fes_mj.optimization.problem_file import load_limits
 from fes_mj.provenance import provenance

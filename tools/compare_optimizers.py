@@ -13,7 +13,8 @@ import numpy as np
 from fes_mj.cycles import WorkTable, joint_speeds, uncertain_table
 from fes_mj.design_file import design_toml, load_design
 from fes_mj.files import json_text, write_text
-from fes_mj.moments import GROUPS, load_moments
+from fes_mj.moments import GROUPS
+from fes_mj.moments_file import load_moments
 from fes_mj.optimization.confidence import gain
 from fes_mj.optimization.optimize import optimize
 from fes_mj.optimization.pareto import pareto_front

@@ -10,7 +10,8 @@ from string import Template
 from fes_mj.design import Design
 from fes_mj.design_file import DESIGNS, load_design
 from fes_mj.files import replacing, write_text
-from fes_mj.moments import JointMoments, load_moments
+from fes_mj.moments import JointMoments
+from fes_mj.moments_file import load_moments
 from fes_mj.simulation.export import mjcf_text, scene_text, sidecar_text
 from fes_mj.simulation.mjcf import build_mjcf
 from fes_mj.statics import quasi_static

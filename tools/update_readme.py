@@ -5,7 +5,8 @@ from pathlib import Path
 from fes_mj.crosscheck import Case
 from fes_mj.design_file import DESIGNS, load_design
 from fes_mj.files import write_text
-from fes_mj.moments import GROUPS, load_moments
+from fes_mj.moments import GROUPS
+from fes_mj.moments_file import load_moments
 from fes_mj.paper.printed import table1
 from fes_mj.table import Table
 from fes_mj.units import RPM

@@ -20,6 +20,7 @@ COMMANDS = {
     "validate": "Run every check of the harness on designs, one verdict each.",
     "explain": "What a check guards against and what usually breaks it.",
     "reproduce": "Compute the paper's tables and figures and write them beside our own.",
+    "moments": "Show what is understood of a file of joint moments, and convert it.",
     "view": "Watch a design run in MuJoCo's interactive viewer.",
 }
 

@@ -40,9 +40,12 @@ def export(
     scene
         Also write scene.xml beside the model: floor, light and camera.
     """
-    loaded, inputs = options.load(design), options.inputs(design)
-    require_writable(out, "the model", ".xml", inputs)
     from fes_mj.simulation.export import MARKS, mjcf_text, scene_text, sidecar_text, variant_options
+
+    changes = variant_options(variant or ())
+    legs = changes.get("legs", 1)
+    loaded, inputs = options.load(design, legs), options.inputs(design)
+    require_writable(out, "the model", ".xml", inputs)
     from fes_mj.simulation.mjcf import build_mjcf
 
     table = out.with_suffix(".csv")
@@ -51,10 +54,9 @@ def export(
         if out.name.lower() == _SCENE or printable(out.name) != out.name:
             raise InputError(f"{out}: --scene writes {_SCENE}, which names the model; give the model another name")
         require_replaceable(out.with_name(_SCENE), "the scene", MARKS["scene"], inputs)
-    changes = variant_options(variant or ())
     texts = {
         out: mjcf_text(build_mjcf(loaded.design, cadence=loaded.cadence, **changes)),
-        table: sidecar_text(loaded.design, loaded.moments, loaded.cadence, changes.get("legs", 1)),
+        table: sidecar_text(loaded.design, loaded.moments, loaded.cadence, legs),
     }
     if scene:
         texts[out.with_name(_SCENE)] = scene_text(loaded.design, out.name)

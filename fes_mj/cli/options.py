@@ -1,15 +1,17 @@
 """Options that several commands share, and what they load."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Literal, NamedTuple
 
 from cyclopts import Parameter
 
+from fes_mj.console import complain
 from fes_mj.design import Design
 from fes_mj.design_file import load_design
 from fes_mj.errors import InputError
-from fes_mj.moments import JointMoments, load_moments
+from fes_mj.moments import JointMoments
+from fes_mj.moments_file import load_moments, measured_files
 from fes_mj.torque_velocity import load_torque_velocity
 from fes_mj.units import RPM
 from fes_mj.variables import VARIABLES
@@ -33,17 +35,31 @@ class MomentsOptions:
     group
         Rider group whose recovered joint moments are used (default p1p2).
     moments
-        Your own joint moments instead: a CSV with the header crank_angle_deg,knee_Nm,hip_Nm.
+        Your own joint moments instead: a CSV with the header crank_angle_deg,knee_Nm,hip_Nm (crank angle from top
+        dead centre), or a measurement file (.toml). With two legs given twice, the right leg's first.
     """
 
     group: Literal["p1p2", "p1p3"] | None = None
-    moments: Path | None = None
+    # a name may begin like a JSON list
+    moments: Annotated[list[Path] | None, Parameter(json_list=False)] = None
 
-    def load_moments(self) -> JointMoments:
-        """The joint moments that the options name. Raises InputError for what cannot be used."""
+    def load_moments(self, legs: int = 1) -> JointMoments:
+        """The joint moments that the options name; says what looks misread. Raises InputError for what is unusable."""
         if self.group and self.moments:
             raise InputError("--group and --moments exclude each other; a file of moments is a group of its own")
-        return load_moments(self.moments or self.group or "p1p2")
+        files = [*map(str, self.moments or ()), *([] if self.moments else [self.group or "p1p2"])]
+        if len(files) > legs:
+            raise InputError(
+                f"--moments is given {len(files)} times; one file serves every leg, two are the right and the left "
+                "leg's: with simulate --legs 2"
+            )
+        moments = load_moments(*files)
+        warn_of(moments)
+        return moments
+
+    def moment_files(self) -> list[Path]:
+        """The files that are read for them."""
+        return [file for path in self.moments or () for file in measured_files(path)]
 
 
 @Parameter(name="*")
@@ -56,7 +72,7 @@ class PrintOptions:
     json
         Print one JSON object and nothing else.
     quiet
-        Print nothing but errors.
+        Print nothing but errors and warnings.
     """
 
     json: Annotated[bool, Parameter(negative="")] = False
@@ -87,16 +103,16 @@ class LoadOptions(MomentsOptions):
     dims: Literal["identified", "printed"] = "identified"
     torque_velocity: Literal["hill"] | None = None
 
-    def load(self, design: str) -> Loaded:
+    def load(self, design: str, legs: int = 1) -> Loaded:
         """Load everything the options name. Raises InputError for what cannot be used."""
-        moments, loaded = self.load_moments(), load_design(design, self.dims)
+        moments, loaded = self.load_moments(legs), load_design(design, self.dims)
         if self.torque_velocity:
-            moments = replace(moments, torque_velocity=load_torque_velocity(self.torque_velocity))
+            moments = moments.at_speed(load_torque_velocity(self.torque_velocity))
         return Loaded(loaded, moments, crank_speed(self.cadence, loaded))
 
     def inputs(self, *designs: str) -> list[Path]:
         """The files that a command with these options and designs reads, which none of its outputs may replace."""
-        return [Path(source) for source in (*designs, self.moments) if source]
+        return [*map(Path, designs), *self.moment_files()]
 
 
 @Parameter(name="*")
@@ -111,6 +127,14 @@ class RunOptions(PrintOptions, LoadOptions):
     """
 
     verbose: Annotated[bool, Parameter(alias="-v", negative="")] = False
+
+
+def warn_of(moments: JointMoments) -> None:
+    """Say on standard error what looks misread in joint moments."""
+    for each in moments.misreadings:
+        complain(f"{moments.name}: {each.text}")
+    if moments.left:
+        warn_of(moments.left)
 
 
 def crank_speed(cadence: float | None, design: Design) -> float:

@@ -110,7 +110,8 @@ class SearchOptions(PrintOptions, MomentsOptions):
     @property
     def inputs(self) -> list[Path]:
         """The files that the options name, which no output may replace."""
-        return [Path(name) for name in (self.start, self.speeds_of, self.moments, self.problem) if name]
+        named = (self.start, self.speeds_of, self.problem)
+        return [*(Path(name) for name in named if name), *self.moment_files()]
 
     @property
     def evaluations(self) -> int:
@@ -129,6 +130,7 @@ class SearchOptions(PrintOptions, MomentsOptions):
         words = ["fes_mj", "optimize", kind]
         for field in fields(self):
             value = spelled_out.get(field.name, getattr(self, field.name))
+            value = value[0] if isinstance(value, list) else value  # the one file of moments
             if field.name in _WITHOUT_EFFECT or value is None or value is False:
                 continue
             option, text = "--" + field.name.replace("_", "-"), str(value)

@@ -56,7 +56,7 @@ def simulate(
     legs
         One leg, or two half a turn apart on the same crank.
     """
-    loaded, inputs = options.load(design), options.inputs(design)
+    loaded, inputs = options.load(design, legs), options.inputs(design)
     _check(timestep, turns)
     if render:
         require_writable(render, "the video", ".mp4", inputs)
@@ -97,18 +97,25 @@ def check_rows(checks: Sequence[Check]) -> list[tuple[str, str, str, Text]]:
 def _print(case: Case, verbose: bool) -> None:
     run = case.simulation
     dynamic = (
-        with_error(run.power_mean, case.static.power_sd),  # the mean is the same functional of the moments
+        with_error(run.power_mean, case.power_sd),  # the mean is the same functional of the moments
         f"{2 * np.pi * run.power_mean / run.cadence:.3f}",
         *(span(ends) for ends in run.joint_range_deg),
     )
-    both = [(name, value, other) for (name, value), other in zip(rows(case.static), dynamic, strict=True)]
-    print_table(heading(case.static, len(run.legs)), ("", "quasi-static", "dynamic"), both)
+    sides = ("",) if len(case.statics) == 1 else (", right", ", left")
+    names = [name for name, _ in rows(case.static)]
+    columns = [[value for _, value in rows(each)] for each in case.statics]
+    print_table(
+        heading(case.static, len(run.legs)),
+        ("", *(f"quasi-static{side}" for side in sides), "dynamic"),
+        [*zip(names, *columns, dynamic, strict=True)],
+    )
     print_table("Checks", ("check", "value", "limit", "verdict"), check_rows(case.checks))
     if verbose:
         terms = [(name.replace("_", " "), f"{value:.5f}") for name, value in run.energy.as_json().items()]
         print_table("Energy over the measured turns", ("term", "J"), terms)
         print_table("Constraint forces", ("loop", "mean N", "largest N"), force_rows(run.loop_force))
-    print_notes(case.static)
+    for each in case.statics:
+        print_notes(each, f"{each.moments.name}: " if len(case.statics) > 1 else "")
     if case.agrees:
         conclude(True, "Dynamic and static agree", f": mean power differs by {case.difference_text}.")
     else:

@@ -9,6 +9,7 @@ from cyclopts import Parameter
 from fes_mj.cli.options import RunOptions
 from fes_mj.console import conclude, print_table, say
 from fes_mj.files import json_text
+from fes_mj.geometry import CRANK_ZERO, FROM_TOP, degrees_from_top
 from fes_mj.statics import QuasiStatic, quasi_static
 from fes_mj.units import RPM
 
@@ -25,7 +26,7 @@ def static(
     design
         trt, r1, r2, d1, d2, or a path to a design file.
     curves
-        With --json: also the curves over the turn, 360 points.
+        Also the curves over the turn: a row every 10 deg, with --json 360 points.
     """
     loaded = options.load(design)
     result = quasi_static(*loaded)
@@ -35,6 +36,8 @@ def static(
         print_table(heading(result), ("", "quasi-static"), rows(result))
         if options.verbose:
             print_table("Joint reactions", ("joint", "mean N", "largest N"), force_rows(result.reactions))
+        if curves:
+            _print_curves(_curves(quasi_static(*loaded, points=36)))
         print_notes(result)
     return 0
 
@@ -81,8 +84,20 @@ def print_notes(result: QuasiStatic, of: str = "") -> None:
 
 
 def _curves(result: QuasiStatic) -> dict[str, Any]:
+    degrees = np.degrees(result.crank_angle)
     return {
-        "crank_angle_deg": np.arange(360.0),
+        "crank_angle_deg": degrees.round(),  # whole degrees, but for rounding
+        FROM_TOP: degrees_from_top(result.design, result.crank_angle),
         "crank_moment_Nm": result.crank_moment,
         **{f"{joint}_deg": np.degrees(angle) for joint, angle in result.joint_angle.items()},
+        **{f"{joint}_Nm": moment for joint, moment in result.joint_moment.items()},
     }
+
+
+def _print_curves(curves: dict[str, Any]) -> None:
+    heads = ("crank deg", "from tdc deg", "crank N m", "knee deg", "hip deg", "knee N m", "hip N m")
+    cells = (
+        [f"{value:.0f}" if name == "crank_angle_deg" else f"{value:.2f}" for value in column]
+        for name, column in curves.items()
+    )
+    print_table(f"Over the turn; crank angle 0: {CRANK_ZERO}; tdc: top dead centre", heads, zip(*cells, strict=True))

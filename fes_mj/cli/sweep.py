@@ -10,7 +10,7 @@ from urllib.parse import urlsplit
 
 from cyclopts import Parameter
 
-from fes_mj.cli.options import PrintOptions
+from fes_mj.cli.options import PrintOptions, warn_of
 from fes_mj.console import print_table, progress_bar
 from fes_mj.errors import InputError, require_extra
 from fes_mj.files import json_text, make_folder, require_writable
@@ -58,6 +58,8 @@ def sweep(
     if cluster is not None:
         _require_address(cluster)
     sweep = Sweep(load_study(study), out)
+    for each in sweep.study.moments.values():
+        warn_of(each)
     if plot:
         _require_plottable(sweep.study, study)
     make_folder(out, "the results")

@@ -8,7 +8,8 @@ import numpy as np
 
 from fes_mj.arrays import FloatArray
 from fes_mj.cycles import WorkTable
-from fes_mj.moments import GROUPS, load_moments
+from fes_mj.moments import GROUPS
+from fes_mj.moments_file import load_moments
 from fes_mj.optimization.findings import Findings
 from fes_mj.optimization.pareto import Front, pareto_front
 from fes_mj.optimization.problem import Problem

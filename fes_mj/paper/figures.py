@@ -14,7 +14,7 @@ from fes_mj.paper.printed import SIX_BARS
 from fes_mj.paper.reconstruction import Posterior
 from fes_mj.paper.runs import Runs
 from fes_mj.reference_tricycle import PAPER_TRICYCLE
-from fes_mj.style import COLOURS, LINKS, X_LABEL
+from fes_mj.style import COLOURS, CRANK_LABEL, LINKS, X_LABEL
 from fes_mj.viewing.charts import draw_linkage, over_turn, turn_axis
 
 Posteriors: TypeAlias = dict[str, Posterior]
@@ -25,10 +25,16 @@ _TURN = np.radians(np.arange(0.0, 360.5, 1.0))
 def moments_over_crank(runs: Runs, posteriors: Posteriors) -> Figure:
     """Figure 1: recovered joint moments over the TRT's crank angle, with their standard deviation."""
     figure, axes = _grid(1, 2, (7.2, 3.0))
+    top = np.degrees(PAPER_TRICYCLE.top_dead_centre)
     for ax, (group, posterior) in zip(axes.flat, posteriors.items(), strict=True):
         for joint in JOINTS:
-            _band(ax, np.degrees(_TURN + PAPER_TRICYCLE.top_dead_centre), posterior.curve(joint, _TURN), joint, joint)
-        _label(ax, group.upper(), "crank angle, deg (top dead centre at 22.4)", "joint moment, N m")
+            _band(ax, np.degrees(_TURN) + top, posterior.curve(joint, _TURN), joint, joint)
+        _label(
+            ax,
+            group.upper(),
+            f"crank angle, deg (0: crank backwards; top dead centre at {top:.1f})",
+            "joint moment, N m",
+        )
     axes.flat[0].legend(title="mean, band of one sd")
     return figure
 
@@ -155,7 +161,7 @@ def _label(ax: Axes, title: str, x: str, y: str) -> None:
 
 def _turn(ax: Axes, title: str) -> None:
     turn_axis(ax)
-    _label(ax, title, "crank angle, deg", "crank power, W")
+    _label(ax, title, CRANK_LABEL, "crank power, W")
 
 
 def _legend_below(figure: Figure, axes: Any, columns: int = 3) -> None:

@@ -8,7 +8,8 @@ import numpy as np
 from fes_mj.crosscheck import Case
 from fes_mj.design_file import DESIGNS, load_design
 from fes_mj.errors import AssemblyError
-from fes_mj.moments import GROUPS, load_moments
+from fes_mj.moments import GROUPS
+from fes_mj.moments_file import load_moments
 from fes_mj.statics import QuasiStatic, quasi_static
 from fes_mj.torque_velocity import load_torque_velocity
 

@@ -127,7 +127,8 @@ def simulate(
     integration breaks down.
     """
     cadence, torque = cadence or design.linkage.cadence, torque or torque_map(moments)
-    require_motion(design, torque.reference)
+    for leg in LEGS[legs]:
+        require_motion(design, torque.of(leg.prefix).reference)
     spec = build_mjcf(
         design,
         cadence=cadence,
@@ -164,7 +165,7 @@ def _measured(model: mujoco.MjModel, run: Run, torque: TorqueMap, drives: dict[s
     speed = {name: rows.speed(name) for name in rows.joints}
     # what the feedback took for the speed, before the step
     ahead = {name: 1.5 * rows[f"{name}_speed"][1:-1] - 0.5 * rows[f"{name}_speed"][:-2] for name in drives}
-    moment = {name: torque.moment(joint, angle[name], ahead[name]) for name, joint in drives.items()}
+    moment = {name: torque.of(name).moment(joint, angle[name], ahead[name]) for name, joint in drives.items()}
     crank_moment = rows.crank_moment()[1:-1]
 
     def work(of: FloatArray, at: FloatArray) -> float:

@@ -24,6 +24,8 @@ def compiled_loop(torque: TorqueMap, drives: dict[str, str]) -> Loop:
     """
     if torque.moments.torque_velocity is not None:
         raise ValueError("the compiled loop takes moments that do not depend on speed")
+    if torque.moments.left is not None:
+        raise ValueError("the compiled loop takes the same moments for both legs")
     advance = _advance()
     knee, hip = ((torque.parameters(joint), torque.table[joint]) for joint in JOINTS)
     kinds = np.array([JOINTS.index(joint) for joint in drives.values()])

@@ -15,6 +15,7 @@ from fes_mj import kinematics
 from fes_mj.design import LEGS, Design
 from fes_mj.errors import InputError
 from fes_mj.files import csv_text
+from fes_mj.geometry import FROM_TOP, degrees_from_top
 from fes_mj.inverse_dynamics import crank_moment
 from fes_mj.moments import JointMoments
 from fes_mj.simulation.appearance import FIELD_OF_VIEW, Spec, framing, lowest_point
@@ -108,14 +109,14 @@ def sidecar_text(design: Design, moments: JointMoments, cadence: float | None = 
     """
     cadence, torque = cadence or design.linkage.cadence, torque_map(moments)
     angle = np.linspace(0, 2 * np.pi, SIDECAR_ROWS, endpoint=False)
-    columns = {"crank_angle_deg": np.degrees(angle)}
+    columns = {"crank_angle_deg": np.degrees(angle), FROM_TOP: degrees_from_top(design, angle)}
     massive, massless = np.zeros((2, SIDECAR_ROWS))
     for leg in LEGS[legs]:
-        motion = kinematics.solve(design, angle - leg.lag)
-        moment = torque.along(motion, cadence)
+        motion, own = kinematics.solve(design, angle - leg.lag), torque.of(leg.prefix)
+        moment = own.along(motion, cadence)
         for joint, angles in motion.joint_angle.items():
             columns[f"{leg.prefix}{joint}_deg"] = np.degrees(angles)
             columns[f"{leg.prefix}{joint}_Nm"] = moment[joint]
-        massive += crank_moment(motion, torque, cadence)
-        massless += crank_moment(motion, torque, cadence, mass_scale=0.0)
+        massive += crank_moment(motion, own, cadence)
+        massless += crank_moment(motion, own, cadence, mass_scale=0.0)
     return csv_text(columns | {"crank_Nm": massive, "quasi_static_crank_Nm": massless})

@@ -37,7 +37,7 @@ LoopMaker: TypeAlias = Callable[[TorqueMap, dict[str, str]], Loop]
 
 def feedback_loop(torque_map: TorqueMap, drives: dict[str, str]) -> Loop:
     """The loop in Python, the recorded field the constraint forces."""
-    return recording_loop({name: torque_map.feedback(joint) for name, joint in drives.items()})
+    return recording_loop({name: torque_map.of(name).feedback(joint) for name, joint in drives.items()})
 
 
 def recording_loop(

@@ -13,7 +13,8 @@ from fes_mj.design import Design
 from fes_mj.design_file import load_design
 from fes_mj.errors import InputError
 from fes_mj.files import Section, is_number, read_toml
-from fes_mj.moments import GROUPS, JointMoments, load_moments
+from fes_mj.moments import GROUPS, JointMoments
+from fes_mj.moments_file import load_moments, measured_files
 from fes_mj.time_step import LONGEST_TIMESTEP
 from fes_mj.variables import COMPONENTS
 
@@ -102,17 +103,19 @@ def load_study(path: Path) -> Study:
     analysis, size = settings.choice("analysis", ANALYSES, "static"), _few(sample, "size", sample.whole("size", 1))
     chunk = _chunk(settings, analysis, size * math.prod(_count(grid, axis) for axis in grid.content))
     axes = {axis: _axis(grid, axis) for axis in grid.content}
-    named = [_beside(path, name) for axis in NAMES for name in axes[axis]]
+    designs, moments = ([_beside(path, name) for name in axes[axis]] for axis in NAMES)
+    files = [Path(name) for name in designs if Path(name).suffix]
+    files += [file for name in moments if Path(name).suffix for file in measured_files(Path(name))]
     study = Study(
-        [path, *(Path(name) for name in named if Path(name).suffix)],
+        [path, *files],
         analysis,
         chunk,
         _timestep(settings, analysis),
         axes,
         _sampled(sample, size),
         size,
-        {name: load_design(_beside(path, name)) for name in axes["design"]},
-        {name: load_moments(_beside(path, name)) for name in axes["moments"]},
+        {name: load_design(file) for name, file in zip(axes["design"], designs, strict=True)},
+        {name: load_moments(file) for name, file in zip(axes["moments"], moments, strict=True)},
     )
     _check(path, study)
     return study

@@ -39,7 +39,7 @@ class Sweep:
     def manifest(self) -> dict[str, Any]:
         """All that the results depend on, as JSON, of long arrays a digest. The order of the grid is part of it."""
         study = self.study
-        moments = {name: digest((each.crank_angle, each.knee, each.hip)) for name, each in study.moments.items()}
+        moments = {name: digest(each) for name, each in study.moments.items()}
         return {
             "fes-mj": version("fes-mj"),
             "analysis": study.analysis,

@@ -43,7 +43,7 @@ def without_length(motion: Motion, body: str, point: str) -> Any:
     return arm.real / abs(arm) + 1j * arm.imag if (body, point) == ("thigh", "knee") else arm
 
 
-def by_crank_angle(case: Case, motion: Motion) -> PerJoint[FloatArray]:
+def by_crank_angle(case: Case, motion: Motion, leg: str = "") -> PerJoint[FloatArray]:
     return case.moments.at(motion.crank_angle - case.moments.measured_on.top_dead_centre)
 
 

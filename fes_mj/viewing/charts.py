@@ -15,7 +15,7 @@ from fes_mj.crosscheck import Case
 from fes_mj.design import BODIES, Design
 from fes_mj.kinematics import FULL_TURN, positions, solve
 from fes_mj.segments import foot_points
-from fes_mj.style import COLOURS, LINKS, X_LABEL
+from fes_mj.style import COLOURS, CRANK_LABEL, LINKS, X_LABEL
 
 PLOTTED = 720  # points of a curve at most
 
@@ -39,7 +39,7 @@ def svg_text(figure: Figure) -> str:
 
 def turn_axis(axes: Axes, title: str = "") -> None:
     """Crank angle over a whole turn against crank power, and a line at zero."""
-    axes.set(xlim=(0, 360), xticks=range(0, 361, 60), xlabel="crank angle, deg", ylabel="crank power, W")
+    axes.set(xlim=(0, 360), xticks=range(0, 361, 60), xlabel=CRANK_LABEL, ylabel="crank power, W")
     axes.axhline(0, color="black", lw=0.8)
     axes.set_title(title, loc="left")
 

@@ -55,7 +55,7 @@ class PowerPanel:
 
 def _write_facts(figure: Any, case: Case) -> None:
     """Title above and the numbers below the curves."""
-    run, static = case.simulation, case.static
+    run = case.simulation
     design, rpm = run.design, run.cadence / RPM
     figure.text(
         0.05, 0.955, literal(f"{design.name.upper()}: {design.linkage.architecture.title}"), size=13, weight="bold"
@@ -65,7 +65,7 @@ def _write_facts(figure: Any, case: Case) -> None:
     figure.text(0.05, 0.925, moments, size=11, color=FAINT)
     facts = (
         ("mean power, dynamic", f"{run.power_mean:.3f} W a leg", COLOURS["mujoco"]),
-        ("mean power, quasi-static", f"{static.power_mean:.3f} W a leg", COLOURS["quasi-static"]),
+        ("mean power, quasi-static", f"{case.static_power_mean:.3f} W a leg", COLOURS["quasi-static"]),
         ("difference", case.difference_text, "black"),
         ("largest loop gap", f"{1e6 * run.loop_gap_max:.1f} µm", "black"),
     )

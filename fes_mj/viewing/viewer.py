@@ -31,7 +31,10 @@ def show(design: Design, moments: JointMoments, cadence: float) -> None:
     )
     data, torque = mujoco.MjData(model), torque_map(moments)
     mujoco.mj_resetDataKeyframe(model, data, 0)
-    drives = [(*drive_addresses(model, name), torque.feedback(joint)) for name, joint in joint_drives(TWO_LEGS).items()]
+    drives = [
+        (*drive_addresses(model, name), torque.of(name).feedback(joint))
+        for name, joint in joint_drives(TWO_LEGS).items()
+    ]
     with mujoco.viewer.launch_passive(model, data, show_left_ui=False, show_right_ui=False) as viewer:
         viewer.cam.type, viewer.cam.fixedcamid = mujoco.mjtCamera.mjCAMERA_FIXED, model.camera("side").id
         start = time.monotonic()

@@ -17,7 +17,7 @@ def test_export_writes_model_table_and_scene(tmp_path: Path, capsys: pytest.Capt
     assert sorted(path.name for path in tmp_path.iterdir()) == ["mine.csv", "mine.xml", "scene.xml"]
     loaded = mujoco.MjModel.from_xml_path(str(tmp_path / "scene.xml"))
     assert (loaded.nu, loaded.nv) == (0, 9)
-    assert (tmp_path / "mine.csv").read_text().startswith("crank_angle_deg,right_knee_deg,")
+    assert (tmp_path / "mine.csv").read_text().startswith("crank_angle_deg,crank_angle_from_tdc_deg,right_knee_deg,")
     assert str(model) in capsys.readouterr().out
 
 

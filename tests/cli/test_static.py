@@ -20,9 +20,25 @@ def test_static_json_has_the_promised_keys(capsys: pytest.CaptureFixture[str]) -
     assert content["crank_angle_deg"] == list(range(360))
     moment = np.array(content["crank_moment_Nm"])
     assert moment.mean() * 2 * np.pi == pytest.approx(content["work_per_turn_J"], rel=1e-3)
+    from_top = np.array(content["crank_angle_from_tdc_deg"])
+    turned = np.arange(360) - content["top_dead_centre_deg"]
+    assert from_top == pytest.approx(turned % 360)
+    assert from_top[int(np.argmin(content["knee_deg"]))] % 359 < 1  # the leg is bent most at top dead centre
+    assert content["crank_angle_zero"] == "the crank points backwards (+x)"
+    assert set(content) >= {"knee_Nm", "hip_Nm"}
     for joint in ("knee", "hip"):
         low, high = content[f"{joint}_range_deg"]
         assert low <= min(content[f"{joint}_deg"]) <= max(content[f"{joint}_deg"]) <= high
+
+
+def test_curves_are_printed_without_json(capsys: pytest.CaptureFixture[str]) -> None:
+    code, out, _ = result(capsys, "static", "d1", "--curves")
+    assert code == 0
+    assert "crank angle 0: the crank points backwards (+x); tdc: top dead centre" in out
+    content = json.loads(result(capsys, "static", "d1", "--curves", "--json")[1])
+    row = next(line.split() for line in out.splitlines() if line.split()[:1] == ["120"])
+    columns = ("crank_angle_from_tdc_deg", "crank_moment_Nm", "knee_deg", "hip_deg", "knee_Nm", "hip_Nm")
+    assert [float(cell) for cell in row[1:]] == pytest.approx([content[name][120] for name in columns], abs=0.006)
 
 
 def test_power_of_recovered_moments_has_a_standard_deviation(
@@ -30,7 +46,7 @@ def test_power_of_recovered_moments_has_a_standard_deviation(
 ) -> None:
     content = json.loads(result(capsys, "static", "d1", "--json")[1])
     assert 0.2 < content["power_sd_W"] < 0.6
-    assert f"31.11 +- {content['power_sd_W']:.2f}" in result(capsys, "static", "d1")[1]
+    assert f"31.12 +- {content['power_sd_W']:.2f}" in result(capsys, "static", "d1")[1]
     own = tmp_path / "own.csv"
     own.write_text("crank_angle_deg,knee_Nm,hip_Nm\n0,10,0\n90,20,0\n180,0,5\n270,-10,0\n")
     assert json.loads(result(capsys, "static", "d1", "--moments", str(own), "--json")[1])["power_sd_W"] is None

@@ -18,6 +18,7 @@ from fes_mj.checks import definitions
 from fes_mj.cli.export import _Variant
 from fes_mj.design_file import DESIGNS
 from fes_mj.errors import InputError
+from fes_mj.geometry import FROM_TOP
 from fes_mj.joints import JOINTS
 from fes_mj.simulation.bench import joint_drives, simulate
 from fes_mj.simulation.export import VARIANTS, mjcf_text, scene_text, sidecar_text, variant_options
@@ -151,7 +152,7 @@ def test_the_table_holds_what_the_simulation_measures(legs: int) -> None:
     rows = [*csv.reader(sidecar_text(design, moments, legs=legs).splitlines())]
     table = dict(zip(rows[0], np.array(rows[1:], float).T, strict=True))
     measured = simulate(design, moments, legs=legs)
-    assert set(table) == {"crank_angle_deg", "crank_Nm", "quasi_static_crank_Nm"} | {
+    assert set(table) == {"crank_angle_deg", FROM_TOP, "crank_Nm", "quasi_static_crank_Nm"} | {
         f"{joint}_{unit}" for joint in joint_drives(measured.legs) for unit in ("deg", "Nm")
     }
     turn = np.degrees(measured.crank_angle)

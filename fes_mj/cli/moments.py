@@ -1,0 +1,91 @@
+"""`fes_mj moments`: what is understood of a file of joint moments."""
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+from cyclopts import Parameter
+
+from fes_mj.cli.options import PrintOptions, warn_of
+from fes_mj.cli.static import span, with_error
+from fes_mj.console import print_table, say
+from fes_mj.errors import InputError, require_extra
+from fes_mj.files import json_text, require_writable, write_text
+from fes_mj.moments import GROUPS, JointMoments
+from fes_mj.moments_file import Measurement, load_measurement, load_moments, measured_files, moments_csv
+from fes_mj.units import RPM
+
+_PICTURES = (".png", ".svg")
+_DEFAULTS = PrintOptions()
+
+
+def moments(
+    file: str,
+    /,
+    *,
+    options: PrintOptions = _DEFAULTS,
+    plot: Path | None = None,
+    out: Annotated[Path | None, Parameter(name=["--out", "-o"])] = None,
+) -> int:
+    """Show what is understood of a file of joint moments, and warn of what looks misread.
+
+    Parameters
+    ----------
+    file
+        A CSV with the header crank_angle_deg,knee_Nm,hip_Nm, a measurement file (.toml), p1p2 or p1p3.
+    plot
+        Draw the moments over crank angle and over joint angle (.png or .svg).
+    out
+        Write them as plain CSV, a row a degree from top dead centre.
+    """
+    path = None if file in GROUPS else Path(file)
+    inputs = measured_files(path) if path else []
+    for output, what, suffix in ((plot, "the plot", ""), (out, "the moments", ".csv")):
+        if output:
+            require_writable(output, what, suffix, inputs)
+    if plot and plot.suffix.lower() not in _PICTURES:
+        raise InputError(f"{plot}: cannot write the plot: the name must end in {' or '.join(_PICTURES)}")
+    measurement = load_measurement(path) if path else Measurement.of(load_moments(file))
+    warn_of(measurement.moments)
+    if plot:
+        require_extra("report", "matplotlib")
+        from fes_mj.viewing.moments_plot import write_plot
+
+        write_plot(plot, measurement)
+    if out:
+        write_text(out, moments_csv(measurement.moments))
+    if options.json:
+        sys.stdout.write(json_text(measurement.summary()))
+    elif not options.quiet:
+        _print(measurement)
+        for output, what in ((plot, "plot"), (out, "moments")):
+            if output:
+                say(f"{what}: {output}")
+    return 0
+
+
+def _print(measurement: Measurement) -> None:
+    found, own = measurement.summary(), measurement.moments
+    counted = f"{found['turns']} turn{'s' * (found['turns'] > 1)}, {found['samples']} samples"
+    rows = [
+        ("knee moment, N m (extension positive)", span(found["knee_Nm"])),
+        ("hip moment, N m (extension positive)", span(found["hip_Nm"])),
+        ("data", counted),
+        ("largest gap, deg of crank angle", f"{found['largest_gap_deg']:.1f}"),
+        ("mean power on the tricycle of the measurement, W", with_error(found["power_mean_W"], found["power_sd_W"])),
+        *((f"  of the {joint}, W", f"{power:.3f}") for joint, power in own.power_mean.items()),
+        ("work per turn there, J", f"{found['work_per_turn_J']:.3f}"),
+    ]
+    print_table(f"{own.name}, measured on {_tricycle(own)}", ("", "understood"), rows)
+
+
+def _tricycle(own: JointMoments) -> str:
+    reference = own.measured_on
+    design, top = reference.design, np.degrees(reference.top_dead_centre)
+    centre, rider = design.linkage.crank_centre, design.rider
+    return (
+        f"a traditional tricycle (R1 [{centre.real:.3f}, {centre.imag:.3f}], R2 {design.linkage.crank:.3f}, R6 "
+        f"{design.linkage.foot:.3f} m; thigh {rider.thigh:.3f}, shank {rider.shank:.3f} m; top dead centre "
+        f"{top:.1f} deg after the crank points backwards) at {reference.cadence / RPM:.2f} rpm"
+    )

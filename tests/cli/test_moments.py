@@ -1,0 +1,92 @@
+"""`fes_mj moments`: what it prints, draws and writes, and what it refuses."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fes_mj.cli.app import run
+from fes_mj.files import csv_text
+from fes_mj.moments import COLUMNS
+from tests.cli.conftest import answer, result
+
+TRIAL = Path(__file__).parents[2] / "examples" / "trial" / "trial.toml"
+
+
+def test_json_and_table_say_the_same(capsys: pytest.CaptureFixture[str]) -> None:
+    code, found = answer(capsys, "moments", str(TRIAL))
+    assert code == 0
+    assert found["turns"] == 4
+    assert found["cadence_rpm"] == pytest.approx(47)
+    assert found["warnings"] == []
+    assert found["knee_Nm"][0] < 0 < found["knee_Nm"][1]
+    assert found["work_per_turn_J"] == pytest.approx(found["power_mean_W"] * 60 / 47)
+    code, out, _ = result(capsys, "moments", str(TRIAL))
+    assert f"{found['power_mean_W']:.2f} +- {found['power_sd_W']:.2f}" in out
+    assert "47.00 rpm" in out
+
+
+def test_groups_are_shown_too(capsys: pytest.CaptureFixture[str]) -> None:
+    _, found = answer(capsys, "moments", "p1p2")
+    _, static = answer(capsys, "static", "trt")
+    assert found["power_sd_W"] == pytest.approx(static["power_sd_W"], rel=0.1)  # legs of another length
+
+
+def test_what_is_written_gives_the_same_power(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    written, picture = tmp_path / "plain.csv", tmp_path / "moments.svg"
+    assert run(["moments", "p1p3", "-o", str(written), "--plot", str(picture), "-q"]) == 0
+    assert picture.read_text().startswith("<?xml")
+    _, original = answer(capsys, "static", "r2", "--group", "p1p3")
+    _, again = answer(capsys, "static", "r2", "--moments", str(written))
+    assert again["power_mean_W"] == pytest.approx(original["power_mean_W"], rel=1e-6)
+
+
+@pytest.mark.parametrize("command", [("static",), ("simulate",), ("moments",), ("optimize", "--budget", "1000")])
+def test_every_command_repeats_the_warnings(
+    command: tuple[str, ...], capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    half = np.arange(0.0, 151.0, 10.0)
+    (path := tmp_path / "half.csv").write_text(
+        csv_text(dict(zip(COLUMNS, (half, 10 + 0 * half, 0 * half), strict=True)))
+    )
+    what, *more = command
+    of = {"moments": [str(path)], "optimize": ["crt", "--moments", str(path)]}
+    code, _, err = result(capsys, what, *of.get(what, ["d1", "--moments", str(path)]), *more, "-q")
+    assert code in (0, 1)
+    assert "warning: half: there is no sample in 210 deg of the turn" in err
+
+
+def test_what_is_refused(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    own = tmp_path / "own.csv"
+    own.write_text(",".join(COLUMNS) + "\n0,1,2\n90,20,-3\n200,-5,4\n")
+    before = own.read_bytes()
+    for arguments, words in (
+        ((str(own), "-o", str(own)), "it would replace"),
+        ((str(TRIAL), "-o", str(TRIAL.with_name("id.sto"))), "must end in .csv"),
+        ((str(own), "--plot", str(tmp_path / "a.gif")), "the name must end in .png or .svg"),
+        ((str(tmp_path / "none.toml"),), "No such file"),
+    ):
+        code, out, err = result(capsys, "moments", *arguments)
+        assert (code, out) == (2, "")
+        assert words in err
+    assert own.read_bytes() == before
+    assert [*tmp_path.iterdir()] == [own]
+
+
+def test_two_files_are_the_two_legs(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    own = tmp_path / "own.csv"
+    own.write_text(",".join(COLUMNS) + "\n0,1,2\n90,20,-3\n200,-5,4\n")
+    pair = ("--moments", str(TRIAL), "--moments", str(own))
+    for refused in (("static", "d1", *pair), ("simulate", "d1", *pair), ("validate", "d1", *pair)):
+        code, _, err = result(capsys, *refused)
+        assert code == 2
+        assert "--moments is given 2 times" in err
+    code, both = answer(capsys, "simulate", "d1", "--legs", "2", *pair)
+    assert code == 0
+    assert both["agrees"]
+    alone = [answer(capsys, "static", "d1", "--moments", str(path))[1]["power_mean_W"] for path in (TRIAL, own)]
+    assert both["static_power_mean_W"] == pytest.approx(sum(alone) / 2)
+    assert both["power_mean_W"] == pytest.approx(sum(alone) / 2, rel=5e-4)
+    code, out, _ = result(capsys, "simulate", "d1", "--legs", "2", *pair)
+    assert code == 0
+    assert "quasi-static, right" in out
