@@ -3,8 +3,8 @@
 import numpy as np
 
 import fes_mj
-from fes_mj.inverse_dynamics import body_loads
 from fes_mj.kinematics import solve
+from fes_mj.loads import body_loads
 from fes_mj.simulation.stepping import FORCE_EVERY
 from fes_mj.statics import equilibrium
 

@@ -15,15 +15,15 @@ from fes_mj.design import Design
 from fes_mj.extrapolation import require_motion
 from fes_mj.files import csv_text
 from fes_mj.geometry import FROM_TOP, degrees_from_top
-from fes_mj.inverse_dynamics import body_loads
 from fes_mj.joints import PerJoint
 from fes_mj.kinematics import Motion
+from fes_mj.loads import Load, body_loads
 from fes_mj.moments import JointMoments
 from fes_mj.segments import GRAVITY
 from fes_mj.simulation.appearance import Spec
 from fes_mj.simulation.bench import Simulation, simulate
 from fes_mj.simulation.mjcf import build_mjcf
-from fes_mj.statics import TURN_POINTS, Load, QuasiStatic, equilibrium, virtual_work
+from fes_mj.statics import TURN_POINTS, QuasiStatic, equilibrium, virtual_work
 from fes_mj.torque_map import TorqueMap, torque_map
 
 # The near-massless variant keeps so much of all masses that inertia adds this power to the quasi-static curve. With

@@ -2,22 +2,10 @@
 
 from fes_mj.arrays import FloatArray
 from fes_mj.kinematics import Motion
-from fes_mj.segments import GRAVITY, inertias
-from fes_mj.statics import Load, virtual_work
+from fes_mj.loads import body_loads
+from fes_mj.segments import GRAVITY
+from fes_mj.statics import virtual_work
 from fes_mj.torque_map import TorqueMap
-
-
-def body_loads(motion: Motion, cadence: float, mass_scale: float = 1.0, gravity: float = GRAVITY) -> dict[str, Load]:
-    """Weight and inertia of every moving body at constant crank speed (rad/s), as loads on it."""
-    loads = {}
-    for body, inertia in inertias(motion.design).items():
-        centre = motion.body_point(body, inertia.centre)
-        loads[body] = Load(
-            force=-mass_scale * inertia.mass * (cadence**2 * centre.second + 1j * gravity),
-            point=centre,
-            couple=-mass_scale * inertia.moment * cadence**2 * motion.rotation[body].second,
-        )
-    return loads
 
 
 def crank_moment(

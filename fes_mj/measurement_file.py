@@ -7,12 +7,14 @@ from pathlib import Path
 
 import numpy as np
 
+from fes_mj import kinematics
 from fes_mj.arrays import FloatArray
 from fes_mj.design_file import read_values
 from fes_mj.errors import AssemblyError, InputError
 from fes_mj.files import Section, Table, read_toml
 from fes_mj.geometry import require_assembly
 from fes_mj.joints import JOINTS, PerJoint
+from fes_mj.loads import leg_moments
 from fes_mj.misreading import odd_angles
 from fes_mj.moments import Misreading
 from fes_mj.reference_tricycle import PAPER_TRICYCLE, ReferenceTricycle
@@ -22,9 +24,10 @@ from fes_mj.units import RPM
 from fes_mj.variables import VARIABLES
 
 _COLUMNS = {"crank": "crank_angle_deg", "knee": "knee_Nm", "hip": "hip_Nm"}
-_OTHERS = ("file", "kinematics", "knee_angle", "angle_unit", "zero", "turning", "unit", "extension")
+_OTHERS = ("file", "kinematics", "knee_angle", "angle_unit", "zero", "turning", "unit", "extension", "pedal_force")
 _SIGNS = {"positive": 1.0, "negative": -1.0}
 _SENSES = {"forward": 1.0, "backward": -1.0}
+_OF_MOMENTS = ("knee", "hip", "unit", "extension")  # what a file of pedal forces does not have
 _OF_THE_CRANK = ("crank", "angle_unit", "zero", "turning")  # what a trial counted by the knee does not have
 
 
@@ -33,7 +36,7 @@ class Description:
     """A measurement file, every key checked.
 
     files: those that it names, moments first. sign: of extension. sense: of the crank angle. zero: where that is, rad
-    after top dead centre. scale: N m per unit of the file.
+    after top dead centre. scale: N m per unit of the file. pedal_force: columns of its components, or none.
     """
 
     path: Path
@@ -45,6 +48,7 @@ class Description:
     sense: float
     zero: float
     scale: float
+    pedal_force: list[str]
     measured_on: ReferenceTricycle
 
     @property
@@ -63,6 +67,7 @@ class Description:
         data, kinematics = _paths(section, "file"), _paths(section, "kinematics")
         if kinematics:
             _only_by_knee(section, data, kinematics)
+        pedal_force = _pedal_force(section)
         extension = section.section("extension")
         extension.only(JOINTS)
         return cls(
@@ -75,6 +80,7 @@ class Description:
             _SENSES[section.choice("turning", _SENSES, "forward")],
             _zero(section, measured_on),
             _scale(section, content.section("measured_on").section("rider"), measured_on),
+            pedal_force,
             measured_on,
         )
 
@@ -94,23 +100,23 @@ class Description:
     def _by_crank(self, path: Path) -> tuple[list[Turn], list[Misreading]]:
         """Turns of a file with a crank angle: of a trial over time each, of other rows one."""
         trial = is_trial(path)
-        crank, knee, hip = self.columns.values()
-        table = read_table(path, WHAT, (crank, knee, hip, *(("time",) if trial else ())))
+        crank = self.columns["crank"]
+        table = read_table(path, WHAT, (crank, *self._measured, *(("time",) if trial else ())))
         given, unit = bounded(path, table, crank, angle=True), self._angle_unit(path, table)
         angle = self.sense * (np.radians(given) if unit == "deg" else given)
         if trial:
             times(path, table)
         rows = by_crank(path, crank, angle) if trial else [np.arange(len(angle))]
-        moments = self._moments(path, table)
-        return [Turn(angle[row] + self.zero, *(each[row] for each in moments)) for row in rows], odd_angles(given, unit)
+        values = self._values(path, table)
+        return [self._turn(angle[row] + self.zero, values[:, row]) for row in rows], odd_angles(given, unit)
 
     def _by_knee(self, path: Path, kinematics: Path) -> list[Turn]:
         """Turns of a trial, from one dead centre of the knee to the next, between which the crank turns evenly."""
         column = _word(self.section, "knee_angle", "knee_angle_r")
         motion = read_table(kinematics, "kinematics", ("time", column))
         tops = by_knee(kinematics, column, times(kinematics, motion), self.sign.knee * motion.columns[column])
-        table = read_table(path, WHAT, ("time", self.columns["knee"], self.columns["hip"]))
-        time, knee, hip = times(path, table), *self._moments(path, table)
+        table = read_table(path, WHAT, ("time", *self._measured))
+        time, values = times(path, table), self._values(path, table)
         if time[0] > tops[-1] or time[-1] < tops[0]:
             raise InputError(
                 f"{path}: column time goes from {time[0]:g} to {time[-1]:g} s, whole turns of {kinematics} from "
@@ -120,14 +126,27 @@ class Description:
         for start, end in pairwise(tops):
             row = (start <= time) & (time < end)
             if time[0] <= start and end <= time[-1]:
-                turns.append(Turn(2 * np.pi * (time[row] - start) / (end - start), knee[row], hip[row]))
+                turns.append(self._turn(2 * np.pi * (time[row] - start) / (end - start), values[:, row]))
         if not turns:
             raise InputError(f"{path}: no whole turn of {kinematics} lies within {time[0]:g} to {time[-1]:g} s")
         return turns
 
-    def _moments(self, path: Path, table: Table) -> PerJoint[FloatArray]:
-        """Knee and hip moment, N m, extension positive."""
-        return PerJoint.of(lambda j: self.sign[j] * self.scale * bounded(path, table, self.columns[j]))
+    @property
+    def _measured(self) -> list[str]:
+        """The two columns that were measured."""
+        return self.pedal_force or [self.columns[joint] for joint in JOINTS]
+
+    def _values(self, path: Path, table: Table) -> FloatArray:
+        """Knee and hip moment, N m, extension positive, or the two components of the pedal force, N; shape (2, n)."""
+        values = np.stack([bounded(path, table, column) for column in self._measured])
+        return values if self.pedal_force else self.scale * np.array([*self.sign])[:, None] * values
+
+    def _turn(self, angle: FloatArray, values: FloatArray) -> Turn:
+        """A turn at crank angles from top dead centre, rad; of pedal forces by inverse dynamics."""
+        if not self.pedal_force:
+            return Turn(angle, *values)
+        motion = kinematics.solve(self.measured_on.design, angle + self.measured_on.top_dead_centre)
+        return Turn(angle, *leg_moments(motion, self.measured_on.cadence, values[0] + 1j * values[1]))
 
     def _angle_unit(self, path: Path, table: Table) -> str:
         """Unit of the crank angle: as declared, otherwise as the header of an OpenSim file says, otherwise deg."""
@@ -158,6 +177,22 @@ def _word(section: Section, key: str, default: str) -> str:
     if not isinstance(value, str):
         section.refuse(key, value, "the name of a column")
     return value
+
+
+def _pedal_force(section: Section) -> list[str]:
+    """The columns of pedal_force; empty where the file holds moments."""
+    value = section.content.get("pedal_force", [])
+    if value == []:
+        return []
+    if not (isinstance(value, list) and len(value) == 2 and all(isinstance(name, str) for name in value)):
+        section.refuse("pedal_force", value, "the names of two columns: force on the pedal along x and y, N")
+    for key in _OF_MOMENTS:
+        if key in section.content:
+            raise InputError(
+                f"{section.path}: {section.label(key)} and {section.label('pedal_force')} exclude each other: "
+                "the file holds moments or pedal forces"
+            )
+    return [*value]
 
 
 def _only_by_knee(section: Section, data: list[Path], kinematics: list[Path]) -> None:

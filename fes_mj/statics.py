@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -15,7 +15,8 @@ from fes_mj.errors import InputError
 from fes_mj.extrapolation import NO_MORE, Extrapolation, extrapolation, require_motion
 from fes_mj.geometry import CRANK_ZERO, top_dead_centre
 from fes_mj.joints import PerJoint
-from fes_mj.kinematics import Jet, Motion
+from fes_mj.kinematics import Motion
+from fes_mj.loads import Load
 from fes_mj.moments import JointMoments
 from fes_mj.torque_map import TorqueMap, torque_map
 from fes_mj.uncertainty import power_weights, standard_deviation
@@ -23,14 +24,6 @@ from fes_mj.units import RPM
 
 # Trapezium rule over a turn; against 36,000 points the mean power changes by less than 1e-5 of itself.
 TURN_POINTS = 3600
-
-
-class Load(NamedTuple):
-    """A force (N, complex) at a point of a body, and a couple (N m) on that body, over crank angle."""
-
-    force: ComplexArray
-    point: Jet
-    couple: FloatArray
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,16 +8,21 @@ import numpy as np
 import pytest
 from scipy import stats
 
+from fes_mj import kinematics
 from fes_mj.design_file import load_design
 from fes_mj.errors import InputError
 from fes_mj.files import csv_text
+from fes_mj.joints import JOINTS
 from fes_mj.measurement_file import Description
 from fes_mj.moments_file import Measurement, load_measurement, load_moments, measured_files, moments_csv
 from fes_mj.reference_tricycle import PAPER_TRICYCLE, ReferenceTricycle
+from fes_mj.simulation.bench import simulate
+from fes_mj.simulation.stepping import FORCE_EVERY
 from fes_mj.statics import quasi_static
 from fes_mj.units import RPM
 from tools.make_trial import FOLDER, invented, trial
 
+TURN = np.radians(np.arange(360.0))
 HEADS = ("crank_angle_deg", "knee_Nm", "hip_Nm")
 SLOW = ReferenceTricycle(PAPER_TRICYCLE.design, 47 * RPM)
 TRIAL = """[moments]
@@ -228,6 +233,8 @@ REFUSED = [
      r"brief\.mot: knee_angle_r is smallest . times; a whole turn lies between two"),
     ('file = "headless.sto"', r"headless\.sto: the joint moments has no line 'endheader'"),
     ('file = "kinds.sto"\nangle_unit = "deg"', r"kinds\.sto: the header says that angles are in rad, moments"),
+    ('file = "plain.csv"\npedal_force = "F"', r"moments\.pedal_force is 'F'; it must be the names of two columns"),
+    ('file = "plain.csv"\npedal_force = ["x", "y"]\nknee = "M"', r"moments\.knee and moments\.pedal_force exclude"),
     ('file = "plain.csv"\n[measured_on]\nR2 = 0.6', r"measured_on: .* cannot close .* cannot have been measured"),
     ('file = "plain.csv"\n[measured_on]\nkind = "crt"', r"measured_on\.kind is 'crt'; it must be one of trt"),
     ('file = "plain.csv"\n[measured_on]\ncadence_rpm = 900', r"measured_on\.cadence_rpm is 900; it must be a cadence"),
@@ -256,3 +263,27 @@ def test_each_leg_has_its_own(tmp_path: Path) -> None:
     moments = load_moments("p1p2", "p1p3")
     assert moments.of_leg("right_knee").name == "p1p2"
     assert moments.of_leg("left_knee").name == "p1p3"
+
+
+def test_pedal_forces_of_a_simulation_give_its_moments_back(tmp_path: Path) -> None:
+    """Moments -> MuJoCo -> force at the pedal -> moments by inverse dynamics: the way back knows nothing of MuJoCo."""
+    design, moments = load_design("trt"), load_moments("p1p3")
+    run = simulate(design, moments)
+    force = run.loop_force["pedal"]
+    angle = np.degrees(run.crank_angle[::FORCE_EVERY])
+    (tmp_path / "pedal.csv").write_text(csv_text({"crank_angle_deg": angle, "Fx": force.real, "Fy": force.imag}))
+    linkage, rider = design.linkage, design.rider
+    path = described(
+        tmp_path,
+        '[moments]\nfile = "pedal.csv"\npedal_force = ["Fx", "Fy"]\nzero = "horizontal"\n[measured_on]\n'
+        f"R1 = [{linkage.ground.real!r}, {linkage.ground.imag!r}]\nR2 = {linkage.crank!r}\nR6 = {linkage.foot!r}\n"
+        f"seat_angle = {math.degrees(linkage.seat_angle)!r}\ngear_ratio = {linkage.gear_ratio!r}\n"
+        f"[measured_on.rider]\nthigh = {rider.thigh!r}\nshank = {rider.shank!r}\nmass = {rider.mass!r}\n",
+    )
+    found = load_measurement(path).moments
+    given = run.torque.along(kinematics.solve(design, TURN), run.cadence)
+    back = found.at(TURN - found.measured_on.top_dead_centre)
+    for joint in JOINTS:
+        error = back[joint] - given[joint]
+        assert np.sqrt(np.mean(error**2)) < 5e-3 * np.abs(given[joint]).max()
+    assert sum(found.power_mean) == pytest.approx(run.power_mean, rel=5e-3)

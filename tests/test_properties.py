@@ -12,8 +12,9 @@ from fes_mj import kinematics, load_design, load_moments, quasi_static
 from fes_mj.crosscheck import Case
 from fes_mj.design import Design, Linkage
 from fes_mj.design_file import design_toml
-from fes_mj.inverse_dynamics import body_loads, crank_moment
+from fes_mj.inverse_dynamics import crank_moment
 from fes_mj.joints import JOINTS
+from fes_mj.loads import body_loads
 from fes_mj.moments import COLUMNS, JointMoments
 from fes_mj.statics import equilibrium, virtual_work
 from fes_mj.torque_map import torque_map
