@@ -20,7 +20,7 @@ class Definition:
     """One row of data/checks.toml."""
 
     name: str
-    kind: str  # cross-check, code verification, solution verification, benchmark, validation
+    kind: str  # cross-check, code verification, solution verification, benchmark, consistency
     quantity: str  # what is measured, in words
     limit: float
     unit: str  # "" is relative or a count
