@@ -33,6 +33,16 @@ def power_weights(motion: Motion, cadence: Any, torque: TorqueMap | ReferenceTri
     return np.asarray(cadence * np.concatenate(parts, axis=-1))
 
 
+def power_rows(motion: Motion, cadence: float, reference: ReferenceTricycle) -> FloatArray:
+    """Crank power of one leg at each crank angle of a motion per Fourier coefficient, W/(N m), shape (angles, 98).
+
+    Their mean over uniform crank angles is what power_weights gives without a torque-velocity relation.
+    """
+    angle, rate = motion.joint_angle, motion.joint_rate
+    rows = [rate[j][:, None] * fourier(reference.source_angle(j, angle[j], rate[j])) for j in JOINTS]
+    return np.asarray(cadence * np.concatenate(rows, axis=1))
+
+
 def with_sd(value: float, deviation: float | None, digits: int = 2) -> str:
     """A value with its standard deviation, where that is known."""
     return f"{value:.{digits}f}" + ("" if deviation is None else f" +- {deviation:.{digits}f}")

@@ -18,8 +18,8 @@ from fes_mj.paper.printed import DATA
 from fes_mj.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.uncertainty import power_weights
 
-UNITS = {"power": "W", "crank_power": "W", "moment": "N m", "work_share": "1"}
-DIRECTIONS = {"extension": 1.0, "flexion": -1.0, "both": 0.0}
+UNITS = {"power": "W", "crank_power": "W", "moment": "N m"}
+DIRECTIONS = {"extension": 1.0, "flexion": -1.0}
 LARGEST_NUMBER = 1e6  # in any unit here; beyond it something else was meant
 SMALLEST_ERROR = 1e-9
 SHORTEST_LEG, LONGEST_LEG = 0.475, 1.0  # m, thigh and shank alike; the TRT closes with these
@@ -60,6 +60,11 @@ def load_evidence(path: Path = DATA / "evidence.toml") -> list[Evidence]:
     return rows
 
 
+def of_group(evidence: list[Evidence], group: str) -> list[Evidence]:
+    """The rows of one group."""
+    return [row for row in evidence if row.group == group]
+
+
 def _row(table: Section, sources: dict[str, str]) -> Evidence:
     """One row, every key checked."""
     names = [field.name for field in fields(Evidence)]
@@ -75,10 +80,10 @@ def _row(table: Section, sources: dict[str, str]) -> Evidence:
     table.number("error", SMALLEST_ERROR, LARGEST_NUMBER, positive)
     if quantity == "power":
         table.choice("design", DESIGNS)
-    if quantity in ("moment", "work_share"):
+    if quantity == "moment":
         table.choice("joint", JOINTS)
-        table.choice("direction", tuple(DIRECTIONS)[: 2 if quantity == "moment" else 3])
-    needed = {"moment": "angle_deg", "crank_power": "leg_m", "work_share": "leg_m"}.get(quantity)
+        table.choice("direction", tuple(DIRECTIONS))
+    needed = {"moment": "angle_deg", "crank_power": "leg_m"}.get(quantity)
     if needed:
         table.require([needed], f"a {quantity} needs it")
     if needed == "angle_deg":
@@ -98,23 +103,13 @@ def functional(row: Evidence) -> tuple[FloatArray, float, float]:
         angle = math.radians(row.angle_deg)
         features = fourier(PAPER_TRICYCLE.source_angle(row.joint, angle, DIRECTIONS[row.direction]))
         return np.concatenate([features * (joint == row.joint) for joint in JOINTS]), row.value, row.error
-    shares = _crank_powers(row.leg_m)
-    total = np.concatenate([shares[joint, "both"] for joint in JOINTS])
-    if row.quantity == "crank_power":
-        return total, row.value, row.error
-    part = [shares[joint, row.direction] * (joint == row.joint) for joint in JOINTS]
-    # a share is a ratio; multiplied out with the 15 W of Section 3 it is linear
-    return np.concatenate(part) - row.value * total, 0.0, row.error * 15.0
-
-
-def _crank_powers(leg: float) -> dict[tuple[str, str], FloatArray]:
-    """Power of each joint in each direction in the TRT, legs of `leg` m, moments read at the crank angle itself."""
-    reference = PAPER_TRICYCLE.design
-    design = replace(reference, rider=replace(reference.rider, thigh=leg, shank=leg))
+    motion = own_leg_motion(row.leg_m)
     features = fourier(_ANGLES - PAPER_TRICYCLE.top_dead_centre)
-    powers = {}
-    for joint, rate in kinematics.solve(design, _ANGLES).joint_rate.items():
-        for name, sign in DIRECTIONS.items():
-            part = np.where(sign * rate >= 0, rate, 0.0)
-            powers[joint, name] = design.linkage.cadence * (features * part[:, None]).mean(axis=0)
-    return powers
+    parts = [rate @ features / rate.size for rate in motion.joint_rate]
+    return PAPER_TRICYCLE.cadence * np.concatenate(parts), row.value, row.error
+
+
+def own_leg_motion(leg: float) -> kinematics.Motion:
+    """A turn of the TRT with a thigh and a shank of `leg` m; its moments are read at the crank angle itself."""
+    reference = PAPER_TRICYCLE.design
+    return kinematics.solve(replace(reference, rider=replace(reference.rider, thigh=leg, shank=leg)), _ANGLES)

@@ -1,64 +1,62 @@
 """The paper's figures from our numbers, and one it lacks."""
 
-from collections.abc import Callable, Iterable
-from typing import Any, TypeAlias
+from collections.abc import Callable, Iterable, Iterator
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from fes_mj.crosscheck import Case
+from fes_mj.fourier import TERMS
 from fes_mj.joints import JOINTS
 from fes_mj.kinematics import solve
 from fes_mj.moments import GROUPS
+from fes_mj.paper.known import STAGES, Known
+from fes_mj.paper.left_out import rms
 from fes_mj.paper.printed import SIX_BARS
 from fes_mj.paper.reconstruction import Posterior
 from fes_mj.paper.runs import Runs
 from fes_mj.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.style import COLOURS, CRANK_LABEL, LINKS, X_LABEL
+from fes_mj.uncertainty import power_rows
 from fes_mj.viewing.charts import draw_linkage, over_turn, turn_axis
-
-Posteriors: TypeAlias = dict[str, Posterior]
 
 _TURN = np.radians(np.arange(0.0, 360.5, 1.0))
 
 
-def moments_over_crank(runs: Runs, posteriors: Posteriors) -> Figure:
-    """Figure 1: recovered joint moments over the TRT's crank angle, with their standard deviation."""
-    figure, axes = _grid(1, 2, (7.2, 3.0))
+def moments_over_crank(runs: Runs, known: Known) -> Figure:
+    """Figure 1: recovered joint moments over the TRT's crank angle, before and after the text."""
+    figure, axes = _grid(2, 2, (7.2, 5.2))
     top = np.degrees(PAPER_TRICYCLE.top_dead_centre)
-    for ax, (group, posterior) in zip(axes.flat, posteriors.items(), strict=True):
+    label = f"crank angle, deg (0: crank backwards; top dead centre at {top:.1f})"
+    for ax, group, title, posterior in _before_and_after(axes, known):
         for joint in JOINTS:
             _band(ax, np.degrees(_TURN) + top, posterior.curve(joint, _TURN), joint, joint)
-        _label(
-            ax,
-            group.upper(),
-            f"crank angle, deg (0: crank backwards; top dead centre at {top:.1f})",
-            "joint moment, N m",
-        )
+        _label(ax, f"{group.upper()}, {title}", label, "joint moment, N m")
     axes.flat[0].legend(title="mean, band of one sd")
     return figure
 
 
-def power_of_the_trt(runs: Runs, posteriors: Posteriors) -> Figure:
-    """Figure 4: power of knee, hip and leg in the TRT over the turn."""
-    figure, axes = _grid(1, 2, (7.2, 3.4))
-    for ax, group in zip(axes.flat, GROUPS, strict=True):
-        _power(ax, runs, "trt", group)
+def power_of_the_trt(runs: Runs, known: Known) -> Figure:
+    """Figure 4: power of knee, hip and leg in the TRT over the turn, before and after the text."""
+    figure, axes = _grid(2, 2, (7.2, 5.6))
+    _powers(axes, runs, known, "trt")
     _legend_below(figure, axes)
     return figure
 
 
-def moments_over_joint_angle(runs: Runs, posteriors: Posteriors) -> Figure:
-    """Figure 5: the torque maps, extension and flexion apart."""
-    figure, axes = _grid(1, 2, (7.2, 3.2))
-    for ax, (group, posterior) in zip(axes.flat, posteriors.items(), strict=True):
+def moments_over_joint_angle(runs: Runs, known: Known) -> Figure:
+    """Figure 5: the torque maps, extension and flexion apart, before and after the text."""
+    figure, axes = _grid(2, 2, (7.2, 5.4))
+    for ax, group, title, posterior in _before_and_after(axes, known):
         _maps(ax, posterior, PAPER_TRICYCLE.ranges.items())
-        _label(ax, group.upper(), "joint angle, deg", "joint moment, N m")
+        _label(ax, f"{group.upper()}, {title}", "joint angle, deg", "joint moment, N m")
     _legend_below(figure, axes, columns=4)
     return figure
 
 
-def design_space(runs: Runs, posteriors: Posteriors) -> Figure:
+def design_space(runs: Runs, known: Known) -> Figure:
     """Figure 10, as far as the text gives it: where crank centres and rocker pivots lie."""
     figure, axes = _grid(1, 1, (6.0, 3.4))
     (ax,) = axes.flat
@@ -80,11 +78,11 @@ def design_space(runs: Runs, posteriors: Posteriors) -> Figure:
     return figure
 
 
-def truncated_maps(runs: Runs, posteriors: Posteriors) -> Figure:
+def truncated_maps(runs: Runs, known: Known) -> Figure:
     """Figure 11: the part of the maps that R2 and D1 use, with the jumps at its ends; limits as in Figure 5."""
     figure, axes = _grid(2, 2, (7.2, 5.4))
     for row, name in zip(axes, ("r2", "d1"), strict=True):
-        for ax, (group, posterior) in zip(row, posteriors.items(), strict=True):
+        for ax, (group, posterior) in zip(row, known.text.posteriors.items(), strict=True):
             angles = runs.static[name, group].joint_angle
             _maps(ax, posterior, ((joint, (angle.min(), angle.max())) for joint, angle in angles.items()))
             _label(ax, f"{name.upper()}, {group.upper()}", "joint angle, deg", "joint moment, N m")
@@ -94,17 +92,16 @@ def truncated_maps(runs: Runs, posteriors: Posteriors) -> Figure:
     return figure
 
 
-def power_of_r2_and_d1(runs: Runs, posteriors: Posteriors) -> Figure:
-    """Figure 12: power of R2 and D1 over the turn, both groups."""
-    figure, axes = _grid(2, 2, (7.2, 6.0), sharey="row")
-    for row, name in zip(axes, ("r2", "d1"), strict=True):
-        for ax, group in zip(row, GROUPS, strict=True):
-            _power(ax, runs, name, group)
+def power_of_r2_and_d1(runs: Runs, known: Known) -> Figure:
+    """Figure 12: power of R2 and D1 over the turn, both groups, before and after the text."""
+    figure, axes = _grid(4, 2, (7.2, 10.4), sharey="row")
+    for rows, name in zip((axes[:2], axes[2:]), ("r2", "d1"), strict=True):
+        _powers(rows, runs, known, name)
     _legend_below(figure, axes)
     return figure
 
 
-def d1_to_scale(runs: Runs, posteriors: Posteriors) -> Figure:
+def d1_to_scale(runs: Runs, known: Known) -> Figure:
     """Figure 13: D1 and a leg to scale at one crank angle, with the paths of knee, pedal and crank pin."""
     figure, axes = _grid(1, 1, (7.2, 4.2))
     (ax,) = axes.flat
@@ -118,7 +115,7 @@ def d1_to_scale(runs: Runs, posteriors: Posteriors) -> Figure:
     return figure
 
 
-def smoothness(runs: Runs, posteriors: Posteriors) -> Figure:
+def smoothness(runs: Runs, known: Known) -> Figure:
     """What the paper lacks: power with segment masses, one leg and two, beside the quasi-static curve."""
     names = ("trt", "r2", "d1")
     figure, axes = _grid(len(names), 2, (7.2, 7.2), sharey="row")
@@ -135,7 +132,28 @@ def smoothness(runs: Runs, posteriors: Posteriors) -> Figure:
     return figure
 
 
-FIGURES: dict[str, Callable[[Runs, Posteriors], Figure]] = {
+def scores(runs: Runs, known: Known) -> Figure:
+    """Printed powers predicted without themselves, in standard deviations: are the stated errors right?"""
+    figure, axes = _grid(1, 2, (7.2, 3.4))
+    for number, (ax, title) in enumerate(zip(axes.flat, STAGES, strict=True)):
+        for group, marker, colour in zip(GROUPS, "os", ("knee", "hip"), strict=True):
+            some = [each for each in known.predictions if each.row.group == group]
+            values = np.array([each.scores[number] for each in some])
+            label = f"{group.upper()}, rms {rms(values):.2f}"
+            ax.plot(values, range(len(some)), marker, color=COLOURS[colour], label=label)
+        for sd in (1, 2):
+            ax.axvspan(-sd, sd, color="0.5", alpha=0.12, lw=0)
+        names = [each.row.design.upper() + " and 15 W" * (each.title != "itself") for each in some]
+        ax.set(yticks=range(len(names)), yticklabels=names, xlim=(-3, 3), ylim=(len(names) + 0.8, -0.5))
+        ax.axvline(0, color="black", lw=0.7)
+        ax.set_title(title, loc="left", fontsize=9, weight="bold")
+        ax.set(xlabel="predicted less printed power, sd", ylabel="left out")
+        ax.label_outer()
+        ax.legend(loc="lower center", ncols=2)
+    return figure
+
+
+FIGURES: dict[str, Callable[[Runs, Known], Figure]] = {
     "figure-01-moments-over-crank": moments_over_crank,
     "figure-04-power-of-the-trt": power_of_the_trt,
     "figure-05-moments-over-joint-angle": moments_over_joint_angle,
@@ -144,6 +162,7 @@ FIGURES: dict[str, Callable[[Runs, Posteriors], Figure]] = {
     "figure-12-power-of-r2-and-d1": power_of_r2_and_d1,
     "figure-13-d1-to-scale": d1_to_scale,
     "smoothness-with-masses": smoothness,
+    "scores": scores,
 }
 
 
@@ -165,14 +184,14 @@ def _turn(ax: Axes, title: str) -> None:
 
 
 def _legend_below(figure: Figure, axes: Any, columns: int = 3) -> None:
-    handles, labels = axes.flat[0].get_legend_handles_labels()
+    handles, labels = axes.flat[-1].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=columns)
 
 
-def _band(ax: Axes, x: Any, curve: tuple[Any, Any], joint: str, label: str, style: str = "-") -> None:
+def _band(ax: Axes, x: Any, curve: tuple[Any, Any], colour: str, label: str, style: str = "-") -> None:
     mean, deviation = curve
-    ax.plot(x, mean, style, color=COLOURS[joint], label=label)
-    ax.fill_between(x, mean - deviation, mean + deviation, color=COLOURS[joint], alpha=0.15, lw=0)
+    ax.plot(x, mean, style, color=COLOURS[colour], label=label)
+    ax.fill_between(x, mean - deviation, mean + deviation, color=COLOURS[colour], alpha=0.15, lw=0)
 
 
 def _maps(ax: Axes, posterior: Posterior, ranges: Iterable[tuple[str, tuple[float, float]]]) -> None:
@@ -189,17 +208,32 @@ def _maps(ax: Axes, posterior: Posterior, ranges: Iterable[tuple[str, tuple[floa
             ax.plot([np.degrees(angle[end])] * 2, jump, ":", color=COLOURS[joint], lw=1)
 
 
-def _power(ax: Axes, runs: Runs, name: str, group: str) -> None:
-    """Quasi-static power of knee, hip and both; MuJoCo's with next to no masses (dots) and with all."""
-    static, case = runs.static[name, group], runs.dynamic[name, group, 1]
-    for joint in JOINTS:
-        power = static.power_of(joint)
-        ax.plot(*over_turn(static.crank_angle, power), color=COLOURS[joint], label=f"{joint}, quasi-static")
-    total = over_turn(static.crank_angle, static.power)
-    ax.plot(*total, color=COLOURS["quasi-static"], label="both, quasi-static")
+def _before_and_after(axes: Any, known: Known) -> Iterator[tuple[Axes, str, str, Posterior]]:
+    """Each of 2 x 2 axes with group, stage in words and posterior: a row for each stage."""
+    for row, stage, title in zip(axes, known.stages, STAGES, strict=True):
+        for ax, (group, posterior) in zip(row, stage.posteriors.items(), strict=True):
+            yield ax, group, title, posterior
+
+
+def _powers(axes: Any, runs: Runs, known: Known, name: str) -> None:
+    """Quasi-static power of knee, hip and both with their sd; below, of the curves that ship, MuJoCo's too."""
+    for ax, group, title, posterior in _before_and_after(axes, known):
+        static = runs.static[name, group]
+        rows = power_rows(static.motion, static.cadence, PAPER_TRICYCLE)
+        hip = np.arange(rows.shape[1]) >= TERMS
+        parts = {"knee": ~hip, "hip": hip, "both": np.ones_like(hip)}
+        for part, counts in parts.items():
+            angle, mean, sd = over_turn(static.crank_angle, *posterior.predict_all(rows * counts))
+            _band(ax, angle, (mean, sd), "quasi-static" if part == "both" else part, f"{part}, quasi-static")
+        if posterior is known.text.posteriors[group]:
+            _simulated(ax, runs.dynamic[name, group, 1])
+        mean_power, deviation = posterior.predict(static.power_weights)
+        _turn(ax, f"{name.upper()}, {group.upper()}, {title}: {mean_power:.1f} ± {deviation:.1f} W")
+
+
+def _simulated(ax: Axes, case: Case) -> None:
+    """MuJoCo's power with next to no masses (dots) and with all."""
     massless = over_turn(case.massless.crank_angle, case.massless.power, points=40)
     ax.plot(*massless, ".", color=COLOURS["mujoco"], ms=4, label="MuJoCo, nearly massless")
-    label = "MuJoCo, with segment masses"
     massive = over_turn(case.simulation.crank_angle, case.simulation.power)
-    ax.plot(*massive, color=COLOURS["mujoco"], lw=0.9, ls=(0, (4, 2)), label=label)
-    _turn(ax, f"{name.upper()}, {group.upper()}: mean {static.power_mean:.1f} ± {static.power_sd:.1f} W")
+    ax.plot(*massive, color=COLOURS["mujoco"], lw=0.9, ls=(0, (4, 2)), label="MuJoCo, with segment masses")

@@ -1,5 +1,6 @@
 """The criteria of the paper's Section 7, which it discusses in words, as numbers for all five designs."""
 
+import itertools
 from collections.abc import Callable
 from typing import Any
 
@@ -12,11 +13,11 @@ from fes_mj.joints import JOINTS
 from fes_mj.kinematics import Motion
 from fes_mj.moments import GROUPS
 from fes_mj.paper.captions import captioned
-from fes_mj.paper.reconstruction import Posterior
+from fes_mj.paper.known import Known
 from fes_mj.paper.runs import Runs
 from fes_mj.statics import QuasiStatic
 from fes_mj.table import Table
-from fes_mj.uncertainty import with_sd
+from fes_mj.uncertainty import power_rows, with_sd
 
 WIDTHS = (2.0, 5.0, 10.0)  # deg over which a jump of the torque map is smoothed
 _DRAWS = 20_000  # of the criteria's weights
@@ -36,9 +37,9 @@ def size_table(runs: Runs) -> Table:
     return captioned("size", rows)
 
 
-def continuity_table(runs: Runs, posteriors: dict[str, Posterior]) -> Table:
+def continuity_table(runs: Runs, known: Known) -> Table:
     """Section 7.2: the jump of the torque map at each end of travel, and what smoothing it costs in mean power."""
-    rows = []
+    rows, posteriors = [], known.text.posteriors
     for (name, group), result in runs.static.items():
         jumps = [with_sd(*posteriors[group].predict(weights), digits=1) for weights in jump_weights(result)]
         costs = [
@@ -48,23 +49,34 @@ def continuity_table(runs: Runs, posteriors: dict[str, Posterior]) -> Table:
     return captioned("continuity", rows, width=[f"{width:g}" for width in WIDTHS])
 
 
-def distribution_table(runs: Runs) -> Table:
-    """Section 7.3: how power is spread over the turn, by the joint moments alone."""
+def distribution_table(runs: Runs, known: Known) -> Table:
+    """Section 7.3: how power is spread over the turn, by the joint moments alone: of the mean curves, and sampled."""
     rows = []
     for (name, group), result in runs.static.items():
-        power = result.power
-        lowest, highest = float(power.min()), float(power.max())
-        rows.append((name.upper(), group, 100 * inactive_share(power), lowest, highest, highest / result.power_mean))
+        each = power_rows(result.motion, result.cadence, result.torque.reference)
+        sampled = distribution(known.text.curves[group] @ each.T)
+        cells = [
+            (float(of_mean), with_sd(float(values.mean()), float(values.std()), digits))
+            for of_mean, values, digits in zip(distribution(result.power), sampled, (1, 1, 1, 2), strict=True)
+        ]
+        rows.append((name.upper(), group, *itertools.chain(*cells)))
     return captioned("distribution", rows)
 
 
-def ranking_table(runs: Runs, posteriors: dict[str, Posterior]) -> Table:
+def distribution(power: FloatArray) -> tuple[FloatArray, ...]:
+    """Inactive zone in % of the turn, lowest and highest power, peak per mean; power: over the turn, last axis."""
+    lowest, highest = power.min(axis=-1), power.max(axis=-1)
+    return 100 * inactive_share(power), lowest, highest, highest / power.mean(axis=-1)
+
+
+def ranking_table(runs: Runs, known: Known) -> Table:
     """A ranking with stated weights, and how much it depends on them."""
     results = {name: [runs.static[name, group] for group in GROUPS] for name in _by_design(runs)}
 
     def smoothing_loss(pair: list[QuasiStatic]) -> float:
         costs = (
-            posteriors[r.moments.name].predict(smoothing_weights(r, np.radians(5.0)))[0] / r.power_mean for r in pair
+            known.text.posteriors[r.moments.name].predict(smoothing_weights(r, np.radians(5.0)))[0] / r.power_mean
+            for r in pair
         )
         return -float(np.mean([*costs]))
 
@@ -94,9 +106,9 @@ def extent(motion: Motion) -> tuple[float, float]:
     return (high - low).real, (high - low).imag
 
 
-def inactive_share(power: FloatArray) -> float:
-    """Share of the turn with negative power."""
-    return float(np.mean(power < 0))
+def inactive_share(power: FloatArray) -> FloatArray:
+    """Share of the turn (last axis) with negative power."""
+    return np.asarray(np.mean(power < 0, axis=-1))
 
 
 def jump_weights(result: QuasiStatic) -> list[FloatArray]:

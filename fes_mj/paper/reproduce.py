@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from fes_mj.errors import InputError
 from fes_mj.files import json_text, require_replaceable, write_files
-from fes_mj.paper import gains, metrics, readings, recovery, tables
-from fes_mj.paper.evidence import Evidence, load_evidence
+from fes_mj.paper import calibration, gains, metrics, readings, recovery, tables, work_shares
+from fes_mj.paper.evidence import load_evidence
+from fes_mj.paper.known import Known, known
 from fes_mj.paper.printed import DATA
-from fes_mj.paper.reconstruction import Reconstruction, reconstruct
 from fes_mj.paper.runs import RUNS, Runs, run_all
 from fes_mj.provenance import provenance
 from fes_mj.style import STYLE
@@ -43,15 +43,13 @@ def reproduce(folder: Path, done: Done, svg: bool = False) -> list[Path]:
     """
     from fes_mj.paper.figures import FIGURES
 
-    evidence = load_evidence()
-    recovered = reconstruct(evidence)
-    runs = run_all(done)
-    pages = _pages(evidence, recovered, runs, done)
+    facts, runs = known(load_evidence()), run_all(done)
+    pages = _pages(facts, runs, done)
     contents: dict[Path, str | bytes] = {folder / name: _page(*page) for name, page in pages.items()}
     for name, draw in FIGURES.items():
-        contents |= _figure(folder / "figures" / name, partial(draw, runs, recovered.posteriors), svg)
+        contents |= _figure(folder / "figures" / name, partial(draw, runs, facts), svg)
         done()
-    record = {"provenance": provenance(inputs(), ["matplotlib"]), "hyperparameters": recovered.hyperparameters.__dict__}
+    record = {"provenance": provenance(inputs(), ["matplotlib"]), "hyperparameters": facts.hyperparameters.__dict__}
     record["timestep_s"] = {" ".join(map(str, run)): case.simulation.timestep for run, case in runs.dynamic.items()}
     record |= {
         name.removesuffix(".md"): {table.title: table.records() for table in contents}
@@ -63,10 +61,9 @@ def reproduce(folder: Path, done: Done, svg: bool = False) -> list[Path]:
     return [*contents]
 
 
-def _pages(
-    evidence: list[Evidence], recovered: Reconstruction, runs: Runs, done: Done
-) -> dict[str, tuple[str, list[Table]]]:
+def _pages(facts: Known, runs: Runs, done: Done) -> dict[str, tuple[str, list[Table]]]:
     """Title and tables of every page by file name."""
+    spread = recovery.rounding_spread(facts)
     return {
         "identification.md": (
             "Dimensions behind the paper's Table 2",
@@ -75,11 +72,14 @@ def _pages(
         "moments.md": (
             "Joint moments recovered from the paper's powers",
             [
-                recovery.evidence_table(evidence, recovered),
-                recovery.left_out_table(evidence, recovered),
-                recovery.sensitivity_table(evidence, recovered),
-                recovery.predictive_table(recovered),
-                recovery.rounding_table(recovered),
+                recovery.evidence_table(facts),
+                calibration.left_out_table(facts),
+                calibration.calibration_table(facts),
+                calibration.sensitivity_table(facts, spread),
+                recovery.statement_table(facts),
+                recovery.knee_table(facts),
+                work_shares.share_table(facts),
+                recovery.rounding_table(spread),
             ],
         ),
         "powers.md": (
@@ -96,9 +96,9 @@ def _pages(
             "The criteria of Section 7 as numbers",
             [
                 metrics.size_table(runs),
-                metrics.continuity_table(runs, recovered.posteriors),
-                metrics.distribution_table(runs),
-                metrics.ranking_table(runs, recovered.posteriors),
+                metrics.continuity_table(runs, facts),
+                metrics.distribution_table(runs, facts),
+                metrics.ranking_table(runs, facts),
             ],
         ),
         "gains.md": (
@@ -117,7 +117,7 @@ def require_ours(folder: Path) -> None:
 
 def inputs() -> list[Path]:
     """The data files that the results depend on."""
-    shared = [DATA / f"{name}.toml" for name in ("paper", "evidence", "torque_velocity")]
+    shared = [DATA / f"{name}.toml" for name in ("paper", "evidence", "text", "torque_velocity")]
     return [*shared, *sorted((DATA / "designs").glob("*/*.toml")), *sorted((DATA / "moments").iterdir())]
 
 

@@ -75,12 +75,9 @@ def test_rows_that_are_no_evidence_are_named(old: str, new: str, words: str, tmp
     assert words in str(caught.value)
 
 
-def test_functionals_of_shares_are_shares() -> None:
-    """On curves with only a knee moment the hip's share is 0 and the knee's 1, whatever the curve."""
-    coefficients = np.zeros(98)
-    coefficients[:5] = 3.0, 1.0, -2.0, 0.5, 4.0
-    for row in (row for row in load_evidence() if row.quantity == "work_share" and row.direction == "both"):
-        knee, hip = (functional(replace(row, joint=joint, value=0.0))[0] @ coefficients for joint in ("knee", "hip"))
-        assert hip == 0
-        whole = next(other for other in load_evidence() if other.group == row.group and other.quantity == "crank_power")
-        assert knee == pytest.approx(functional(whole)[0] @ coefficients)
+def test_own_legs_of_the_papers_length_are_the_trt() -> None:
+    """Moments read at the crank angle itself, and through the map: the same where the legs are the same."""
+    (row,) = (row for row in load_evidence() if row.name == "p1p2 15 W with own legs")
+    (trt,) = (row for row in load_evidence() if row.name == "p1p2 power in TRT")
+    weights = functional(replace(row, leg_m=0.52))[0]
+    assert np.abs(weights - functional(trt)[0]).max() < 1e-9

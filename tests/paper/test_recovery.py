@@ -1,16 +1,37 @@
-"""What the recovered moments predict of what they were not told."""
+"""Tables on what is known of the moments, before and after the text."""
+
+import pytest
 
 from fes_mj.moments import GROUPS
+from fes_mj.paper.calibration import calibration_table, left_out_table, sensitivity_table
 from fes_mj.paper.evidence import load_evidence
-from fes_mj.paper.reconstruction import reconstruct
-from fes_mj.paper.recovery import left_out_table
+from fes_mj.paper.known import Known, known
+from fes_mj.paper.recovery import evidence_table, knee_table, statement_table
 
 
-def test_leaving_the_trt_out_leaves_its_twin_out_too() -> None:
-    """Without both, the TRT is predicted three times less surely than with the 15 W item."""
-    evidence = load_evidence()
-    rows = left_out_table(evidence, reconstruct(evidence)).records()
+@pytest.fixture(scope="module")
+def facts() -> Known:
+    return known(load_evidence())
+
+
+def test_the_text_leaves_no_evidence_behind(facts: Known) -> None:
+    """Every number is recovered within two of its own errors, with the text as without."""
+    for row, said in zip(evidence_table(facts).records(), facts.evidence, strict=True):
+        assert abs(row["residual, errors"]) < 2, said.name
+        assert abs(float(row["with the text"].split()[0]) - said.value) < 2 * said.error, said.name
+
+
+def test_what_ships_fulfils_what_was_said(facts: Known) -> None:
+    for row in statement_table(facts).records():
+        assert 0 < row["holds, % of curves"] <= 100
+        if row["allowed"] == "at most 1":
+            assert row["with the text"] == "1.00 +- 0.00"
+
+
+def test_tables_of_calibration_agree(facts: Known) -> None:
+    chosen = sensitivity_table(facts, {}).records()[0]
+    by_group = {row["group"]: row for row in calibration_table(facts).records()}
     for group in GROUPS:
-        alone, both = (row for row in rows if row["group"] == group and row["design"] == "TRT")
-        assert both["left out"] == "itself and the 15 W item"
-        assert both["sd, W"] > 2 * alone["sd, W"]
+        assert chosen[f"rms of scores, {group}"] == pytest.approx(by_group[group]["rms, numbers alone"], rel=1e-6)
+    assert by_group["both"]["scores"] == len(left_out_table(facts).rows) == 12
+    assert {row["evidence"] for row in knee_table(facts).records() if row["group"] == "p1p3"} == {"not used"}

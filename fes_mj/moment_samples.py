@@ -1,0 +1,37 @@
+"""Joint moments drawn from what is known of a rider group: whatever is not linear in them gets its error from these.
+
+A mean power is linear; its error follows from the mean and the covariance that load_moments gives, which are those of
+these very curves.
+"""
+
+from pathlib import Path
+
+import numpy as np
+
+from fes_mj.arrays import FloatArray
+from fes_mj.fourier import fourier
+from fes_mj.moments import JointMoments
+
+DEGREES = np.arange(360.0)  # crank angles of a rider group's curves, from top dead centre
+_FOLDER = Path(__file__).parent / "data" / "moments"
+
+
+def sampled_coefficients(group: str) -> FloatArray:
+    """Fourier coefficients (fes_mj.fourier) of the curves drawn for "p1p2" or "p1p3", knee's then hip's, N m.
+
+    Shape (curves, 98). The curves are independent of each other: any part of them is a sample as well.
+    """
+    with np.load(_FOLDER / f"{group}-samples.npz") as stored:
+        return np.asarray(stored["coefficients"], float)
+
+
+def sampled_moments(group: str) -> list[JointMoments]:
+    """The curves drawn for "p1p2" or "p1p3", each as moments of its own, without a covariance."""
+    return [moments_of(curve, f"{group} {number}") for number, curve in enumerate(sampled_coefficients(group), 1)]
+
+
+def moments_of(coefficients: FloatArray, name: str) -> JointMoments:
+    """The curves of Fourier coefficients, knee's then hip's, N m, shape (98,), at every degree."""
+    angle = np.radians(DEGREES)
+    knee, hip = (fourier(angle) @ part for part in np.split(coefficients, 2))
+    return JointMoments(name, angle, knee, hip)

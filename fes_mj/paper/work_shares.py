@@ -1,0 +1,79 @@
+"""Szecsi's shares of work, counted on recovered curves: the sign of a moment, which says who works, is not linear."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from fes_mj.arrays import FloatArray
+from fes_mj.files import read_toml
+from fes_mj.fourier import fourier
+from fes_mj.joints import PerJoint
+from fes_mj.paper.captions import captioned
+from fes_mj.paper.evidence import own_leg_motion
+from fes_mj.paper.known import STAGES, Known
+from fes_mj.paper.statements import TEXT
+from fes_mj.reference_tricycle import PAPER_TRICYCLE
+from fes_mj.table import Table
+from fes_mj.uncertainty import with_sd
+
+MUSCLES = {
+    "knee extensors": ("knee", 1),
+    "knee flexors": ("knee", -1),
+    "hip extensors": ("hip", 1),
+    "hip flexors": ("hip", -1),
+}
+
+
+class Work(NamedTuple):
+    """Work of some muscles in a turn per 2 pi and cadence, shape (curves,): while they shorten, while they lengthen."""
+
+    concentric: FloatArray
+    eccentric: FloatArray
+
+    @property
+    def net(self) -> FloatArray:
+        return self.concentric + self.eccentric
+
+
+def work(curves: FloatArray, leg: float) -> dict[str, Work]:
+    """What extensors and flexors of each joint do in the TRT, legs of `leg` m; curves: shape (curves, 98), N m.
+
+    Extensors do what is done while the moment extends, whichever way the joint moves.
+    """
+    motion = own_leg_motion(leg)
+    features = fourier(motion.crank_angle - PAPER_TRICYCLE.top_dead_centre)
+    moments = PerJoint(*(part @ features.T for part in np.split(curves, 2, axis=1)))
+    done = {}
+    for name, (joint, sign) in MUSCLES.items():
+        power = np.where(sign * moments[joint] > 0, moments[joint] * motion.joint_rate[joint], 0.0)
+        done[name] = Work(np.maximum(power, 0).mean(axis=1), np.minimum(power, 0).mean(axis=1))
+    return done
+
+
+def shares(curves: FloatArray, leg: float, muscles: str) -> tuple[FloatArray, FloatArray]:
+    """Share of `muscles`, or of all "eccentric" work, in %, if 100 % is the net work of the leg: net work per net work;
+    and if it is all concentric work: concentric per concentric. Shapes (curves,).
+    """
+    done = work(curves, leg)
+    concentric, eccentric = (np.sum([getattr(each, kind) for each in done.values()], axis=0) for kind in Work._fields)
+    one = (eccentric, eccentric) if muscles == "eccentric" else (done[muscles].net, done[muscles].concentric)
+    return 100 * one[0] / (concentric + eccentric), 100 * one[1] / concentric
+
+
+def share_table(known: Known) -> Table:
+    """What the abstract says beside both readings, by curves of the numbers alone and with the text."""
+    rows = []
+    for said in read_toml(TEXT, "statements").content["share"]:
+        group, cells = said["group"], []
+        counted = [shares(stage.curves[group], said["leg_m"], said["muscles"]) for stage in known.stages]
+        for reading in zip(*counted, strict=True):
+            cells += [with_sd(float(np.median(each)), _half_width(each), 0) for each in reading]
+        rows.append((group, said["muscles"], float(said["value"]), *cells))
+    readings = [f"{reading}, {stage}" for reading in ("net", "concentric") for stage in STAGES]
+    return captioned("share", rows, reading=readings)
+
+
+def _half_width(values: FloatArray) -> float:
+    """Half of what two thirds of the values span: a ratio can be anything where its denominator nears 0."""
+    low, high = np.quantile(values, (1 / 6, 5 / 6))
+    return float(high - low) / 2
