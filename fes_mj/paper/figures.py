@@ -94,7 +94,7 @@ def truncated_maps(runs: Runs, known: Known) -> Figure:
 
 def power_of_r2_and_d1(runs: Runs, known: Known) -> Figure:
     """Figure 12: power of R2 and D1 over the turn, both groups, before and after the text."""
-    figure, axes = _grid(4, 2, (7.2, 10.4), sharey="row")
+    figure, axes = _grid(4, 2, (7.2, 7.6), sharey="row")
     for rows, name in zip((axes[:2], axes[2:]), ("r2", "d1"), strict=True):
         _powers(rows, runs, known, name)
     _legend_below(figure, axes)
@@ -216,15 +216,16 @@ def _before_and_after(axes: Any, known: Known) -> Iterator[tuple[Axes, str, str,
 
 
 def _powers(axes: Any, runs: Runs, known: Known, name: str) -> None:
-    """Quasi-static power of knee, hip and both with their sd; below, of the curves that ship, MuJoCo's too."""
+    """Quasi-static power of knee, hip and, with its sd, both; below, of the curves that ship, MuJoCo's too."""
     for ax, group, title, posterior in _before_and_after(axes, known):
         static = runs.static[name, group]
         rows = power_rows(static.motion, static.cadence, PAPER_TRICYCLE)
-        hip = np.arange(rows.shape[1]) >= TERMS
-        parts = {"knee": ~hip, "hip": hip, "both": np.ones_like(hip)}
-        for part, counts in parts.items():
-            angle, mean, sd = over_turn(static.crank_angle, *posterior.predict_all(rows * counts))
-            _band(ax, angle, (mean, sd), "quasi-static" if part == "both" else part, f"{part}, quasi-static")
+        for joint, start in zip(JOINTS, (0, TERMS), strict=True):
+            part = slice(start, start + TERMS)
+            curve = over_turn(static.crank_angle, rows[:, part] @ posterior.mean[part])
+            ax.plot(*curve, color=COLOURS[joint], label=f"{joint}, quasi-static")
+        angle, *both = over_turn(static.crank_angle, *posterior.predict_all(rows))
+        _band(ax, angle, (both[0], both[1]), "quasi-static", "both, quasi-static")
         if posterior is known.text.posteriors[group]:
             _simulated(ax, runs.dynamic[name, group, 1])
         mean_power, deviation = posterior.predict(static.power_weights)
