@@ -46,7 +46,7 @@ def test_power_of_recovered_moments_has_a_standard_deviation(
 ) -> None:
     content = json.loads(result(capsys, "static", "d1", "--json")[1])
     assert 0.2 < content["power_sd_W"] < 0.6
-    assert f"31.12 +- {content['power_sd_W']:.2f}" in result(capsys, "static", "d1")[1]
+    assert f"31.14 +- {content['power_sd_W']:.2f}" in result(capsys, "static", "d1")[1]
     own = tmp_path / "own.csv"
     own.write_text("crank_angle_deg,knee_Nm,hip_Nm\n0,10,0\n90,20,0\n180,0,5\n270,-10,0\n")
     assert json.loads(result(capsys, "static", "d1", "--moments", str(own), "--json")[1])["power_sd_W"] is None
