@@ -29,7 +29,7 @@ def moments_over_crank(runs: Runs, known: Known) -> Figure:
     """Figure 1: recovered joint moments over the TRT's crank angle, before and after the text."""
     figure, axes = _grid(2, 2, (7.2, 5.2))
     top = np.degrees(PAPER_TRICYCLE.top_dead_centre)
-    label = f"crank angle, deg (0: crank backwards; top dead centre at {top:.1f})"
+    label = f"crank angle, deg (0: backwards, tdc: {top:.1f})"
     for ax, group, title, posterior in _before_and_after(axes, known):
         for joint in JOINTS:
             _band(ax, np.degrees(_TURN) + top, posterior.curve(joint, _TURN), joint, joint)
