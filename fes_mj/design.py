@@ -107,9 +107,10 @@ class Rider:
     """Leg lengths in m, body mass in kg, and whose segment parameters apply (a key of segments.DE_LEVA)."""
 
     thigh: float = 0.52  # R4
-    shank: float = 0.52  # R5: knee to ankle
+    shank: float = 0.52  # R5: knee to the level of the pedal axle, at right angles to the sole (docs/errata.md, E18)
     mass: float = 75.0
     sex: str = "male"
+    leg_mass_factor: float = 1.0  # on the masses of thigh, shank and foot; see data/riders.toml
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ import numpy as np
 from fes_mj.design import ARCHITECTURES, BRANCHES, Design, Linkage, Rider
 from fes_mj.errors import InputError
 from fes_mj.files import Section, is_number, read_toml
+from fes_mj.riders import PRESETS, preset
 from fes_mj.segments import DE_LEVA
 from fes_mj.text import printable
 from fes_mj.variables import LONGEST, VARIABLES, Variable
@@ -36,14 +37,27 @@ def load_design(source: str | Path, dims: str = "identified") -> Design:
 def _read(path: Path) -> Design:
     content = read_toml(path, "design file")
     content.only(("linkage", "rider"))
-    linkage, rider = content.section("linkage"), content.section("rider")
-    kind, sex = linkage.choice("kind", ARCHITECTURES), rider.choice("sex", DE_LEVA, Rider.sex)
+    linkage = content.section("linkage")
+    if isinstance(linkage.content.get("rider"), str):
+        raise InputError(f"{path}: rider = ... stands in [linkage]; move it above the first table")
+    kind = linkage.choice("kind", ARCHITECTURES)
     words = ("kind",) if kind == "trt" else ("kind", "branch")
     numbers = read_values(linkage, kind, *words)
     branch = linkage.choice("branch", BRANCHES, Linkage.branch)
-    return Design(
-        printable(path.stem), Linkage(kind, **numbers, branch=branch), Rider(sex=sex, **read_values(rider, kind, "sex"))
-    )
+    return Design(printable(path.stem), Linkage(kind, **numbers, branch=branch), _rider(content, kind))
+
+
+def _rider(content: Section, kind: str) -> Rider:
+    """Of a table [rider] or, by `rider = "NAME"` above all tables, a preset."""
+    named = content.content.get("rider", {})
+    if isinstance(named, dict):
+        rider = content.section("rider")
+        sex = rider.choice("sex", DE_LEVA, Rider.sex)
+        return Rider(sex=sex, **read_values(rider, kind, "sex"))
+    found = preset(named)
+    if not found:
+        content.refuse("rider", named, f"a table [rider], or the name of a rider: {PRESETS}")
+    return found
 
 
 def read_values(section: Section, kind: str, *others: str, owner: str = "", partial: bool = False) -> dict[str, Any]:
@@ -89,7 +103,9 @@ def design_toml(design: Design, comment: str = "") -> str:
         if owner is design.linkage and design.linkage.branch != Linkage.branch:
             lines.append(f'branch = "{design.linkage.branch}"')
         for symbol, variable in _variables(table, kind).items():
-            lines.append(f"{symbol} = {_written(getattr(owner, variable.attribute), variable)}")
+            value = getattr(owner, variable.attribute)
+            if not (variable.implied and value == getattr(type(owner), variable.attribute)):
+                lines.append(f"{symbol} = {_written(value, variable)}")
     return "\n".join(lines) + "\n"
 
 

@@ -49,12 +49,12 @@ LINK_MASS_PER_LENGTH = 1.0
 def inertias(design: Design) -> dict[str, Inertia]:
     """Inertia by body name; the shank carries the foot in its boot, the pedal's carrier its pedal arm."""
     rider, linkage = design.rider, design.linkage
-    table = DE_LEVA[rider.sex]
-    bodies = {"thigh": _segment(table["thigh"], rider.mass, rider.thigh, 0, 1)}
+    table, mass = DE_LEVA[rider.sex], rider.leg_mass_factor * rider.mass
+    bodies = {"thigh": _segment(table["thigh"], mass, rider.thigh, 0, 1)}
     ankle, heel, toe = foot_points(design)
     bodies["shank"] = combine(
-        _segment(table["shank"], rider.mass, abs(ankle), 0, ankle / abs(ankle)),
-        _segment(table["foot"], rider.mass, abs(toe - heel), heel, (toe - heel) / abs(toe - heel)),
+        _segment(table["shank"], mass, abs(ankle), 0, ankle / abs(ankle)),
+        _segment(table["foot"], mass, abs(toe - heel), heel, (toe - heel) / abs(toe - heel)),
     )
     for body in linkage.architecture.bodies[2:]:
         length = design.link_lengths[body]

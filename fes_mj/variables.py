@@ -40,6 +40,7 @@ class Variable:
     kinds: tuple[str, ...] = ALL
     needed: bool = False  # in a design file
     vector: bool = False
+    implied: bool = False  # not written into a design file while it has its default
 
     @property
     def allowed(self) -> str:
@@ -69,6 +70,7 @@ VARIABLES = {
         Variable("thigh", "rider", "thigh", "m", SHORTEST, LONGEST),
         Variable("shank", "rider", "shank", "m", SHORTEST, LONGEST),
         Variable("mass", "rider", "mass", "kg", 1, 500),
+        Variable("leg_mass_factor", "rider", "leg_mass_factor", "", 0.1, 2, implied=True),
         Variable("cadence_rpm", "", "cadence", "rpm", 1, 200),
     )
 }
