@@ -15,6 +15,7 @@ COMMANDS = {
     "simulate": "Simulate a design in MuJoCo and compare its crank power with statics.",
     "static": "Mean crank power of a design by statics, without MuJoCo.",
     "optimize": "Find linkages with more crank power, within the paper's limits, and simulate them.",
+    "fit": "Find the seat for a rider, or who of a population can ride.",
     "sweep": "Evaluate many designs, riders, cadences and moments; resumes where it was stopped.",
     "export": "Write the MJCF model of a design, for other tools.",
     "validate": "Run every check of the harness on designs, one verdict each.",

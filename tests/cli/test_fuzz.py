@@ -179,6 +179,7 @@ def _fuzz_flags(seed: int, count: int, folder: Path, capsys: pytest.CaptureFixtu
         "simulate": ("--cadence", "--turns", "--legs", "--timestep", "--out", "--render", "--nonsense"),
         "export": ("-o", "--out", "--variant", "--cadence", "--dims"),
         "validate": ("--report", "--junit", "--video", "--group", "--cadence", "--moments"),
+        "fit": ("--thigh", "--stature", "--sex", "--percentile", "--up", "--samples", "--out", "--population"),
         "explain": ("--x",),
         "sing": ("--x",),
     }

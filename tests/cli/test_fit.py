@@ -1,0 +1,85 @@
+"""`fes_mj fit`: the promised JSON and file, and what is refused."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+import fes_mj
+from tests.cli.conftest import answer, result
+
+MAN = ("--percentile", "50", "--sex", "male")
+
+
+def test_json_and_design_file_agree(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "mine.toml"
+    code, content = answer(capsys, "fit", "r1", *MAN, "-o", str(out))
+    assert code == 0
+    assert content["fits"]
+    assert content["design_file"] == str(out)
+    assert content["rider"]["thigh"] == pytest.approx(0.408)
+    written, drawn = fes_mj.load_design(out), fes_mj.load_design("r1")
+    assert written.linkage.ground - drawn.linkage.ground == pytest.approx(complex(*content["seat_shift_m"]))
+    assert out.read_text().startswith("# r1 with the seat moved by fes_mj")
+    static = answer(capsys, "static", str(out))[1]
+    for key in ("power_mean_W", "knee_range_deg", "hip_range_deg", "extrapolated_share"):
+        assert static[key] == pytest.approx(content[key])
+    assert content["power_unmoved_W"] < content["power_mean_W"]
+    assert content["power_paper_rider_W"] == pytest.approx(answer(capsys, "static", "r1")[1]["power_mean_W"])
+
+
+def test_not_fitting_is_a_result_and_writes_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "mine.toml"
+    arguments = ("fit", "d1", "--stature", "1.25", "--sex", "female", "--forward", "0", "0.1", "-o", str(out))
+    code, content = answer(capsys, *arguments)
+    assert (code, content["fits"], content["design_file"]) == (1, False, None)
+    assert not out.exists()
+    text = result(capsys, *arguments)[1]
+    assert "Does not fit: d1: thigh and shank cannot close at crank angle" in text
+    assert "it would with a seat that moves farther" in text
+
+
+def test_a_population(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("matplotlib")
+    monkeypatch.setattr("fes_mj.population._NODES", 3)  # a coarse map, in a second
+    plot = tmp_path / "who.png"
+    code, out, err = result(capsys, "fit", "r2", "--population", "--samples", "10", "--plot", str(plot), "--json")
+    content = json.loads(out)
+    assert (code, err, content["samples"]) == (0, "", 10)
+    for key in ("share_unmoved", "share_fitted"):
+        assert content[key].keys() == {"men", "women"}
+    assert plot.stat().st_size > 10_000
+    again = json.loads(result(capsys, "fit", "r2", "--population", "--samples", "10", "--json")[1])
+    assert again == content
+    assert "women, seat moved" in result(capsys, "fit", "r2", "--population", "--samples", "10", "--seed", "1")[1]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("--stature", "175", "--sex", "male"), "--stature is 175; it must be from 1.32 to 2.37 m (centimetres?"),
+        (("--stature", "0.5", "--sex", "male"), "--stature is 0.5; it must be from 1.32 to 2.37 m\n"),
+        (("--percentile", "0", "--sex", "male"), "--percentile is 0; it must be above 0 and below 100"),
+        (("--percentile", "100", "--sex", "male"), "--percentile is 100; it must be above 0 and below 100"),
+        (("--percentile", "nan", "--sex", "male"), "--percentile is nan; it must be above 0"),
+        (("--percentile", "50"), "--stature and --percentile need --sex"),
+        (("--sex", "male"), "which needs one of them"),
+        (("--thigh", "0.4"), "--thigh and --shank need each other"),
+        (("--thigh", "40", "--shank", "50"), "--thigh is 40; it must be a length in metres from 0.001 to 2 (centim"),
+        (("--thigh", "0.4", "--shank", "0.5", *MAN), "exclude each other"),
+        (("--up", "0.1", "0"), "--up is 0.1 0, an empty range"),
+        (("--forward", "-5", "30"), "--forward is -5 30; both must be from -1 to 1 m"),
+        (("--recline", "nan", "3"), "--recline is nan 3; both must be"),
+        (("--population", "--samples", "1"), "--samples is 1; it must be from 10 to 100,000"),
+        (("--population", "--seed", "-1"), "--seed is -1; it must not be negative"),
+        (("--population", *MAN), "--percentile is of one rider; leave it out with --population"),
+        (("--population", "-o", "a.toml"), "--out is of one rider"),
+        (("--samples", "20"), "--samples is of a population; it needs --population"),
+        (("-o", "mine.txt"), "the name must end in .toml"),
+        (("--dims", "printed"), "rocker and coupler cannot close"),
+    ],
+)
+def test_what_is_refused(arguments: tuple[str, ...], words: str, capsys: pytest.CaptureFixture[str]) -> None:
+    code, out, err = result(capsys, "fit", "r2", *arguments)
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert words in err
