@@ -10,11 +10,13 @@ import numpy as np
 
 from fes_mj import kinematics
 from fes_mj.arrays import ComplexArray, FloatArray
+from fes_mj.characteristics import power_characteristics
 from fes_mj.checks import LEAST_POWER, Check, check
 from fes_mj.design import Design
 from fes_mj.extrapolation import require_motion
 from fes_mj.files import csv_text
 from fes_mj.geometry import FROM_TOP, degrees_from_top
+from fes_mj.joint_forces import JointForces
 from fes_mj.joints import PerJoint
 from fes_mj.kinematics import Motion
 from fes_mj.loads import Load, body_loads
@@ -100,6 +102,11 @@ class Case:
     def static(self) -> QuasiStatic:
         """The quasi-static turn. Raises AssemblyError if the linkage does not close."""
         return self.static_at(TURN_POINTS)
+
+    @cached_property
+    def joint_forces(self) -> JointForces:
+        """Of the quasi-static turn, without and with masses."""
+        return JointForces(self.static)
 
     def static_at(self, points: int, leg: str = "") -> QuasiStatic:
         """The quasi-static turn at another number of crank angles, or of the leg with this name prefix."""
@@ -211,11 +218,13 @@ class Case:
     def summary(self) -> dict[str, Any]:
         """The result as JSON names and units it."""
         run = self.simulation
-        return self.static.summary() | {
+        known = self.static.summary() | self.joint_forces.summary()
+        return known | {
             "power_mean_W": run.power_mean,
             "work_per_turn_J": 2 * np.pi * run.power_mean / run.cadence,
             "knee_range_deg": run.joint_range_deg.knee,
             "hip_range_deg": run.joint_range_deg.hip,
+            **power_characteristics(run.power, run.turns),
             "power_sd_W": self.power_sd,
             "static_power_mean_W": self.static_power_mean,
             "relative_difference": self.relative_difference,

@@ -201,13 +201,16 @@ def grashof_margin(design: Design) -> FloatArray:
     return _rocker_clearance(design).margin
 
 
-def transmission_angles(motion: Motion) -> dict[str, float]:
-    """Smallest transmission angle over the turn, deg, at the joint of each dyad: between its links, at most 90 deg."""
+def transmission_angles(motion: Motion) -> dict[str, FloatArray]:
+    """Smallest transmission angle over the turn, deg, at the joint of each dyad: between its links, at most 90 deg.
+
+    Of a batch an array of shape (designs,).
+    """
     angles = {}
     for (one, other), (_, _, joint) in DYADS.items():
         if joint in motion.points:
             cosine = (motion.direction(one) * np.conj(motion.direction(other))).real
-            angles[joint] = float(np.degrees(np.acos(np.clip(np.abs(cosine), 0, 1)).min()))
+            angles[joint] = np.degrees(np.acos(np.clip(np.abs(cosine), 0, 1)).min(axis=-1))
     return angles
 
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from fes_mj import kinematics
 from fes_mj.arrays import ComplexArray, FloatArray
+from fes_mj.characteristics import motion_characteristics, power_characteristics
 from fes_mj.design import BODIES, Design
 from fes_mj.errors import InputError
 from fes_mj.extrapolation import NO_MORE, Extrapolation, extrapolation, require_motion
@@ -130,6 +131,8 @@ class QuasiStatic:
             "work_per_turn_J": self.work_per_turn,
             "knee_range_deg": self.joint_range_deg.knee,
             "hip_range_deg": self.joint_range_deg.hip,
+            **power_characteristics(self.power),
+            **motion_characteristics(self.motion),
             "extrapolation": self.extrapolation.verdict,
             "extrapolated_share": self.extrapolation.share,
             "extrapolated_work_share": self.extrapolation.work_share,

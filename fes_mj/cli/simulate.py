@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from fes_mj.cli.options import RunOptions
-from fes_mj.cli.static import force_rows, heading, print_notes, rows, span, with_error
+from fes_mj.cli.static import force_rows, heading, print_forces, print_notes, rows, span, turn_rows, with_error
 from fes_mj.console import conclude, number, print_table, say, verdict
 from fes_mj.errors import InputError
 from fes_mj.files import json_text, require_folder, require_replaceable, require_writable, write_files
@@ -109,6 +109,11 @@ def _print(case: Case, verbose: bool) -> None:
         ("", *(f"quasi-static{side}" for side in sides), "dynamic"),
         [*zip(names, *columns, dynamic, strict=True)],
     )
+    quasi, measured = (turn_rows(each) for each in (case.static.summary(), case.summary()))
+    turn = [(name, value, other) for (name, value), (_, other) in zip(quasi, measured, strict=True)]
+    together = "dynamic" if len(run.legs) == 1 else "dynamic, both legs"
+    print_table("The turn", ("", f"quasi-static{sides[0]}", together), turn)
+    print_forces(case.joint_forces)
     print_table("Checks", ("check", "value", "limit", "verdict"), check_rows(case.checks))
     if verbose:
         terms = [(name.replace("_", " "), f"{value:.5f}") for name, value in run.energy.as_json().items()]

@@ -10,6 +10,7 @@ from fes_mj.cli.options import RunOptions
 from fes_mj.console import conclude, print_table, say
 from fes_mj.files import json_text
 from fes_mj.geometry import CRANK_ZERO, FROM_TOP, degrees_from_top
+from fes_mj.joint_forces import NET_FORCE, JointForces, KneeLoad, peaks
 from fes_mj.statics import QuasiStatic, quasi_static
 from fes_mj.units import RPM
 
@@ -31,9 +32,12 @@ def static(
     loaded = options.load(design)
     result = quasi_static(*loaded)
     if options.json:
-        sys.stdout.write(json_text(result.summary() | (_curves(quasi_static(*loaded, points=360)) if curves else {})))
+        content = result.summary() | JointForces(result).summary()
+        sys.stdout.write(json_text(content | (_curves(quasi_static(*loaded, points=360)) if curves else {})))
     elif not options.quiet:
         print_table(heading(result), ("", "quasi-static"), rows(result))
+        print_table("The turn", ("", "quasi-static"), turn_rows(result.summary()))
+        print_forces(JointForces(result))
         if options.verbose:
             print_table("Joint reactions", ("joint", "mean N", "largest N"), force_rows(result.reactions))
         if curves:
@@ -57,6 +61,30 @@ def rows(result: QuasiStatic) -> list[tuple[str, str]]:
         ("work per turn, J", f"{result.work_per_turn:.3f}"),
         *((f"{joint} angle, deg", span(ends)) for joint, ends in result.joint_range_deg.items()),
     ]
+
+
+def turn_rows(summary: dict[str, Any]) -> list[tuple[str, str]]:
+    """How even the power is, how well the linkage transmits, how large it is, as text."""
+    return [
+        ("inactive zone, % of the turn", f"{100 * summary['inactive_zone_share']:.1f}"),
+        ("power peak to peak, W", f"{summary['power_peak_to_peak_W']:.1f}"),
+        ("power peak to mean", f"{summary['power_peak_to_mean']:.2f}"),
+        ("coefficient of fluctuation of energy", f"{summary['energy_fluctuation']:.3f}"),
+        ("smallest transmission angle, deg", f"{summary['transmission_angle_min_deg']:.1f}"),
+        ("length x height, cm", f"{100 * summary['length_m']:.0f} x {100 * summary['height_m']:.0f}"),
+    ]
+
+
+def print_forces(joint_forces: JointForces) -> None:
+    """Print the peak forces of the joints, the knee's load in body weights, and what that leaves out."""
+    forces = (joint_forces.static.reactions, joint_forces.with_masses)
+    cells = [(joint.replace("_", " "), *(f"{peaks(each)[joint]:.0f}" for each in forces)) for joint in forces[0]]
+    knees = [joint_forces.knee(each) for each in forces]
+    cells += [
+        (f"knee {kind}, body weights", *(f"{getattr(knee, kind):.3f}" for knee in knees)) for kind in KneeLoad._fields
+    ]
+    print_table("Largest forces, N", ("joint", "moments alone", "with masses"), cells)
+    say(f"note: {NET_FORCE[0].lower()}{NET_FORCE[1:]}")
 
 
 def span(ends: list[float]) -> str:

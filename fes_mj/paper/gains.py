@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from fes_mj.arrays import FloatArray
+from fes_mj.characteristics import energy_swing
 from fes_mj.design import TRICYCLE_SPEED
 from fes_mj.moments import GROUPS
 from fes_mj.paper.captions import captioned
@@ -75,12 +75,6 @@ def at_knee_speed(result: QuasiStatic, mean_speed: float) -> QuasiStatic:
     """The same design geared so that its knee moves at this mean absolute speed (rad/s)."""
     factor = mean_speed / joint_speed(result, "knee")[0]
     return quasi_static(result.design, result.moments, factor * result.cadence)
-
-
-def energy_swing(power: FloatArray, cadence: float) -> float:
-    """Largest less smallest energy stored over the turn, J, when the load takes the mean of `power` (whole turns)."""
-    seconds = 2 * np.pi / cadence / len(power)
-    return float(np.ptp(np.cumsum(power - power.mean()))) * seconds
 
 
 def _gain(result: QuasiStatic, base: QuasiStatic) -> str:

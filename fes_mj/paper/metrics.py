@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 
 from fes_mj.arrays import FloatArray
+from fes_mj.characteristics import extent, inactive_share
 from fes_mj.fourier import fourier
-from fes_mj.geometry import bounding_box, transmission_angles
+from fes_mj.geometry import transmission_angles
 from fes_mj.joints import JOINTS
-from fes_mj.kinematics import Motion
 from fes_mj.moments import GROUPS
 from fes_mj.paper.captions import captioned
 from fes_mj.paper.known import Known
@@ -83,7 +83,7 @@ def ranking_table(runs: Runs, known: Known) -> Table:
     criteria: dict[str, Callable[[list[QuasiStatic]], float]] = {  # large is good
         "power: mean of both groups": lambda pair: float(np.mean([r.power_mean for r in pair])),
         "size: length x height": lambda pair: -float(np.prod(extent(pair[0].motion))),
-        "transmission: smallest angle": lambda pair: min(transmission_angles(pair[0].motion).values()),
+        "transmission: smallest angle": lambda pair: float(min(transmission_angles(pair[0].motion).values())),
         "continuity: loss by 5 deg of smoothing": smoothing_loss,
         "inactive zone": lambda pair: -float(np.mean([inactive_share(r.power) for r in pair])),
         "peak per mean": lambda pair: -float(np.mean([r.power.max() / r.power_mean for r in pair])),
@@ -98,17 +98,6 @@ def ranking_table(runs: Runs, known: Known) -> Table:
         for i, name in enumerate(results)
     ]
     return captioned("ranking", rows, criterion=[*criteria], count=str(len(criteria)))
-
-
-def extent(motion: Motion) -> tuple[float, float]:
-    """Length and height of the box around all joints over the turn, m."""
-    low, high = bounding_box({name: jet.value for name, jet in motion.points.items()})
-    return (high - low).real, (high - low).imag
-
-
-def inactive_share(power: FloatArray) -> FloatArray:
-    """Share of the turn (last axis) with negative power."""
-    return np.asarray(np.mean(power < 0, axis=-1))
 
 
 def jump_weights(result: QuasiStatic) -> list[FloatArray]:

@@ -6,8 +6,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import fes_mj
 from tests.cli.conftest import result
 from tests.test_design_file import written
+
+ROCKER = ("rocker_pivot", "rocker_joint")
 
 
 def test_static_json_has_the_promised_keys(capsys: pytest.CaptureFixture[str]) -> None:
@@ -58,3 +61,28 @@ def test_joint_angles_without_data_are_mentioned(capsys: pytest.CaptureFixture[s
     code, out, _ = result(capsys, "static", str(path))
     assert code == 0
     assert "note: the hip moves 10.0 deg beyond the range of the moments (85.3 to 119.8 deg)" in out
+
+
+def test_static_says_how_even_how_large_and_how_loaded(capsys: pytest.CaptureFixture[str]) -> None:
+    content = json.loads(result(capsys, "static", "r2", "--json")[1])
+    curve = np.array(json.loads(result(capsys, "static", "r2", "--json", "--curves")[1])["crank_moment_Nm"])
+    assert content["inactive_zone_share"] == pytest.approx(np.mean(curve < 0), abs=1 / 360)
+    assert content["power_peak_to_mean"] == pytest.approx(curve.max() / curve.mean(), rel=1e-2)
+    for key in ("power_peak_to_peak_W", "energy_fluctuation", "transmission_angle_min_deg", "length_m", "height_m"):
+        assert content[key] > 0
+    forces, massive = content["peak_force_N"], content["peak_force_with_masses_N"]
+    assert forces.keys() == massive.keys() == {*("hip", "knee", "pedal", "crank_centre", "crank_pin"), *ROCKER}
+    assert content["knee_load_bodyweight"].keys() == {"shear", "compression"}
+    assert "comes on top" in content["knee_load_note"]
+    text = result(capsys, "static", "r2")[1]
+    for words in ("inactive zone, % of the turn", "smallest transmission angle, deg", "crank pin", "knee shear, body"):
+        assert words in text
+
+
+def test_a_rider_by_name(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    path = tmp_path / "injured.toml"
+    text = (Path(fes_mj.__file__).parent / "data/designs/identified/r1.toml").read_text()
+    path.write_text('rider = "ansur-man-p95-sci"\n' + text.partition("[rider]")[0])
+    content = json.loads(result(capsys, "static", str(path), "--json")[1])
+    assert content["power_mean_W"] > 0
+    assert content["peak_force_leg_mass_sd_N"].keys() == content["peak_force_N"].keys()

@@ -6,20 +6,11 @@ import numpy as np
 import pytest
 
 import fes_mj
-from fes_mj import kinematics
 from fes_mj.fourier import fourier
 from fes_mj.moments import JointMoments
-from fes_mj.paper.metrics import extent, inactive_share, jump_weights, smoothing_weights
-from fes_mj.reference_tricycle import PAPER_TRICYCLE
+from fes_mj.paper.metrics import jump_weights, smoothing_weights
 from fes_mj.statics import quasi_static
 from fes_mj.torque_map import TorqueMap
-
-
-def test_extent_of_the_trt() -> None:
-    """From the hip to the far side of the crank circle."""
-    motion = kinematics.solve(PAPER_TRICYCLE.design)
-    crank = PAPER_TRICYCLE.design.linkage.crank
-    assert extent(motion)[0] == pytest.approx(-PAPER_TRICYCLE.design.linkage.crank_centre.real + crank, abs=1e-5)
 
 
 def test_smoothing_against_the_solver() -> None:
@@ -39,9 +30,3 @@ def test_smoothing_against_the_solver() -> None:
     low = result.joint_angle.knee.min()
     jump = torque_map.moment("knee", low, 1.0) - torque_map.moment("knee", low, -1.0)
     assert jump_weights(result)[0] @ coefficients == pytest.approx(float(jump), abs=1e-3)
-
-
-def test_inactive_share_of_a_sine() -> None:
-    angle = np.linspace(0, 2 * np.pi, 3600, endpoint=False)
-    assert inactive_share(np.sin(angle)) == pytest.approx(0.5, abs=1e-3)
-    assert inactive_share(2 + np.sin(angle)) == 0
