@@ -87,6 +87,13 @@ class Section:
             self.refuse(key, value, f"one of {', '.join(known)}")
         return value
 
+    def switch(self, key: str) -> bool:
+        """True or false, false where it is not said."""
+        value = self.content.get(key, False)
+        if not isinstance(value, bool):
+            self.refuse(key, value, "true or false")
+        return value
+
     def whole(self, key: str, default: int) -> int:
         """A whole number from 1."""
         value = self.content.get(key, default)

@@ -55,7 +55,7 @@ class TorqueMap:
         moment = self.at_source(joint, source)
         return moment if self.moments.torque_velocity is None else moment * self.speed_factor(joint, source, rate)
 
-    def along(self, motion: Motion, cadence: float) -> PerJoint[FloatArray]:
+    def along(self, motion: Motion, cadence: Any) -> PerJoint[FloatArray]:
         """Knee and hip moment along a motion at a crank speed in rad/s, of which only the size counts, N m."""
         angle, rate = motion.joint_angle, motion.joint_rate
         return PerJoint.of(lambda joint: self.moment(joint, angle[joint], np.abs(cadence) * rate[joint]))

@@ -6,12 +6,16 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from fes_mj.characteristics import motion_characteristics, power_characteristics
 from fes_mj.cycles import Cycles, WorkTable, cycles, uncertain_table
 from fes_mj.design import Design
 from fes_mj.errors import InputError, UnstableError
 from fes_mj.joints import JOINTS
+from fes_mj.kinematics import solve
 from fes_mj.moments import JointMoments
+from fes_mj.statics import virtual_work
 from fes_mj.sweep.study import NAMES, Study
+from fes_mj.torque_map import torque_map
 from fes_mj.units import RPM
 from fes_mj.variables import COMPONENTS, VARIABLES, replaced
 
@@ -27,6 +31,11 @@ _STATIC = {
     "work_per_turn_J": float,
     **{name.format(joint): float for joint in JOINTS for name in ("{}_min_deg", "{}_max_deg", "mean_{}_speed_deg_s")},
 }
+_CHARACTERISTICS = (
+    *("inactive_zone_share", "power_peak_to_peak_W", "power_peak_to_mean", "energy_fluctuation"),
+    *("transmission_angle_min_deg", "length_m", "height_m"),
+)
+_AT_ONCE = 50  # designs, for whose power over the turn arrays of a few megabytes are needed
 _DYNAMIC = {
     "simulated_power_mean_W": float,
     "loop_gap_max_m": float,
@@ -41,7 +50,8 @@ def column_types(study: Study) -> dict[str, type]:
     why: None, or why there is no power. A cadence that is varied is a result as well: the same column.
     """
     axes = {axis: str if axis in NAMES else float for axis in (*study.grid, *study.sample)}
-    return {"point": int} | axes | _STATIC | (_DYNAMIC if study.analysis == "dynamic" else {})
+    more = dict.fromkeys(_CHARACTERISTICS, float) if study.characteristics else {}
+    return {"point": int} | axes | _STATIC | more | (_DYNAMIC if study.analysis == "dynamic" else {})
 
 
 def evaluate(study: Study, chunk: int) -> Columns:
@@ -58,6 +68,8 @@ def evaluate(study: Study, chunk: int) -> Columns:
             if rows.size:
                 values = {variable: column[rows] for variable, column in varied.items()}
                 found = _static(design, values, moments, len(rows))
+                if study.characteristics:
+                    found |= _characteristics(design, values, moments, found)
                 if study.analysis == "dynamic":
                     found |= _dynamic(design, values, moments, study.timestep, found["why"])
                 for result, column in found.items():
@@ -92,6 +104,21 @@ def _static(design: Design, values: Columns, moments: JointMoments, count: int) 
             f"{joint}_max_deg": np.degrees(turn.high[joint]),
             f"mean_{joint}_speed_deg_s": np.degrees(turn.travel[joint]) * turns_per_s,
         }
+    return result
+
+
+def _characteristics(design: Design, values: Columns, moments: JointMoments, found: Columns) -> Columns:
+    """Of the points of a batch that have a power; found: their quasi-static results."""
+    torque, rows = torque_map(moments), np.flatnonzero(found["why"] == "")
+    result = {name: np.full(len(found["why"]), np.nan) for name in _CHARACTERISTICS}
+    rpm = np.broadcast_to(found["cadence_rpm"], found["why"].shape)
+    for start in range(0, len(rows), _AT_ONCE):
+        some = rows[start : start + _AT_ONCE]
+        motion = solve(replaced(design, {name: column[some, None] for name, column in values.items()}))
+        cadence = rpm[some, None] * RPM
+        power = np.atleast_2d(cadence * virtual_work(motion, torque.along(motion, cadence)))
+        for name, value in (power_characteristics(power) | motion_characteristics(motion)).items():
+            result[name][some] = value
     return result
 
 

@@ -26,7 +26,7 @@ MOST_CHUNKS = 10**6  # files of one folder
 MOST_POINTS = 10**9
 MOST_VALUES = 10**6  # of one axis, or of the sample: they are held in memory
 _TABLES = {
-    "study": ("analysis", "chunk", "timestep"),
+    "study": ("analysis", "chunk", "timestep", "characteristics"),
     "grid": ("design", "moments", *COMPONENTS),
     "sample": ("size", "seed", *COMPONENTS),
 }
@@ -39,13 +39,15 @@ class Study:
     """Every combination of the grid's values with every point of the sample.
 
     Point i takes sample point i % size; the grid's last axis is the next to turn. grid: by axis, values as in the file.
-    sample: by variable, shape (size,). files: what was read, the study file first.
+    sample: by variable, shape (size,). characteristics: whether those of the turn are
+    computed as well. files: what was read, the study file first.
     """
 
     files: list[Path]
     analysis: str
     chunk: int
     timestep: float | None
+    characteristics: bool
     grid: dict[str, list[Any]]
     sample: dict[str, FloatArray]
     size: int
@@ -111,6 +113,7 @@ def load_study(path: Path) -> Study:
         analysis,
         chunk,
         _timestep(settings, analysis),
+        settings.switch("characteristics"),
         axes,
         _sampled(sample, size),
         size,

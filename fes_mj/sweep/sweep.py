@@ -45,6 +45,7 @@ class Sweep:
             "analysis": study.analysis,
             "chunk": study.chunk,
             "timestep": study.timestep,
+            "characteristics": study.characteristics,
             "grid": study.grid,
             "sample": {name: digest(values) for name, values in study.sample.items()},
             "designs": {name: design_toml(design) for name, design in study.designs.items()},

@@ -121,3 +121,27 @@ def test_a_run_of_too_many_steps_costs_one_row(study: Path) -> None:
     assert np.isnan(refused["simulated_power_mean_W"])
     assert good["why"] is None
     assert good["simulated_power_mean_W"] == pytest.approx(good["power_mean_W"], rel=1e-3)
+
+
+def test_characteristics_are_those_of_single_designs(study: Path) -> None:
+    """Over 720 angles instead of 3600: shares are right to an angle at each end of a zone."""
+    rows = evaluated(study, WIDE.replace("[grid]", "[study]\ncharacteristics = true\n[grid]", 1))
+    compared = 0
+    for row in rows:
+        found = alone(row, study)
+        if isinstance(found, InputError):
+            assert np.isnan([row["inactive_zone_share"], row["length_m"], row["energy_fluctuation"]]).all()
+            continue
+        summary, compared = found.summary(), compared + 1
+        assert row["inactive_zone_share"] == pytest.approx(summary["inactive_zone_share"], abs=6 / 720)
+        for name in ("power_peak_to_peak_W", "transmission_angle_min_deg", "length_m", "height_m"):
+            assert row[name] == pytest.approx(summary[name], rel=0.02, abs=0.02)
+        for name in ("power_peak_to_mean", "energy_fluctuation"):
+            assert row[name] == pytest.approx(summary[name], rel=0.02, abs=0.02, nan_ok=True)
+    assert compared > 20
+
+
+def test_characteristics_are_true_or_false(study: Path) -> None:
+    study.write_text('[study]\ncharacteristics = "yes"\n[grid]\ndesign = ["d1"]\n')
+    with pytest.raises(InputError, match=r"study\.characteristics is 'yes'; it must be true or false"):
+        load_study(study)
