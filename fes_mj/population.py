@@ -15,7 +15,8 @@ from fes_mj.moments import JointMoments
 from fes_mj.riders import Legs, Population, populations
 
 SAMPLES = 1000  # people of each sex: a share is right to 1.6 % of the sample, one standard deviation
-GROUPS = {"men": "man", "women": "woman"}
+SEATS = ("unmoved", "fitted")
+PEOPLE = {"men": "man", "women": "woman"}
 # Thighs and shanks for which the best seat is sought; in between its power is interpolated (see Study.map_error).
 _NODES = 9
 _PROBES = 5  # people of each sex whose seat is sought as well, for the error of the map
@@ -64,7 +65,7 @@ class Study:
         """The result as JSON names and units it."""
         size = len(next(iter(self.riders.values())).unmoved)
         content: dict[str, Any] = {"design": self.design.name, "group": self.moments.name, "samples": size}
-        for seat in ("unmoved", "fitted"):
+        for seat in SEATS:
             powers = {who: getattr(each, seat) for who, each in self.riders.items()}
             content[f"share_{seat}"] = {who: float(np.mean(np.isfinite(power))) for who, power in powers.items()}
             content[f"power_mean_{seat}_W"] = {who: _of_riding(np.mean, power) for who, power in powers.items()}
@@ -81,7 +82,7 @@ def _of_riding(statistic: Callable[[FloatArray], Any], power: FloatArray) -> flo
 
 def steps() -> int:
     """How often study_population calls `done`."""
-    return _NODES + len(GROUPS)
+    return _NODES + len(PEOPLE)
 
 
 def study_population(
@@ -98,7 +99,7 @@ def study_population(
     Raises AssemblyError for a linkage that cannot turn whoever sits where.
     """
     table, random = WorkTable.of(moments), np.random.default_rng(seed)
-    legs = {who: populations()[key].sample(samples, random) for who, key in GROUPS.items()}
+    legs = {who: populations()[key].sample(samples, random) for who, key in PEOPLE.items()}
     thigh, shank = (
         np.linspace(
             min(each.min() for each in lengths) - _MARGIN, max(each.max() for each in lengths) + _MARGIN, _NODES
@@ -115,7 +116,7 @@ def study_population(
     drawn = PowerMap(fine[0], fine[1], _unmoved(design, thighs, shanks, table).reshape(_FINE, _FINE))
     for who, each in legs.items():
         fitted, unmoved = found.at(each.thigh, each.shank), _unmoved(design, each.thigh, each.shank, table)
-        riders[who] = Riders(populations()[GROUPS[who]], each, unmoved, fitted)
+        riders[who] = Riders(populations()[PEOPLE[who]], each, unmoved, fitted)
         probes = slice(0, _PROBES)
         errors.append(fitted[probes] - _fitted(design, each.thigh[probes], each.shank[probes], table, limits))
         done()

@@ -160,7 +160,7 @@ def _population(
         from fes_mj.viewing.people import population_figure
 
         with mpl.rc_context(STYLE), replacing(plot) as temporary:
-            population_figure(study).savefig(temporary, dpi=150)
+            population_figure([study]).savefig(temporary, dpi=150)
     if options.json:
         sys.stdout.write(json_text(study.summary()))
     elif not options.quiet:

@@ -21,6 +21,7 @@ from fes_mj.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.style import COLOURS, CRANK_LABEL, LINKS, X_LABEL
 from fes_mj.uncertainty import power_rows
 from fes_mj.viewing.charts import draw_linkage, over_turn, turn_axis
+from fes_mj.viewing.people import population_figure
 
 _TURN = np.radians(np.arange(0.0, 360.5, 1.0))
 
@@ -153,6 +154,11 @@ def scores(runs: Runs, known: Known) -> Figure:
     return figure
 
 
+def who_can_ride(runs: Runs, known: Known) -> Figure:
+    """Power over the thighs and shanks of people, with the seat as drawn and moved."""
+    return population_figure([*runs.people.values()])
+
+
 FIGURES: dict[str, Callable[[Runs, Known], Figure]] = {
     "figure-01-moments-over-crank": moments_over_crank,
     "figure-04-power-of-the-trt": power_of_the_trt,
@@ -163,6 +169,7 @@ FIGURES: dict[str, Callable[[Runs, Known], Figure]] = {
     "figure-13-d1-to-scale": d1_to_scale,
     "smoothness-with-masses": smoothness,
     "scores": scores,
+    "who-can-ride": who_can_ride,
 }
 
 

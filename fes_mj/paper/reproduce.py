@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from fes_mj.errors import InputError
 from fes_mj.files import json_text, require_replaceable, write_files
-from fes_mj.paper import calibration, gains, metrics, readings, recovery, tables, work_shares
+from fes_mj.paper import calibration, gains, metrics, people, readings, recovery, tables, work_shares
 from fes_mj.paper.evidence import load_evidence
 from fes_mj.paper.known import Known, known
 from fes_mj.paper.printed import DATA
@@ -101,6 +101,10 @@ def _pages(facts: Known, runs: Runs, done: Done) -> dict[str, tuple[str, list[Ta
                 metrics.ranking_table(runs, facts),
             ],
         ),
+        "people.md": (
+            "Who can ride: people instead of the paper's rider",
+            [people.percentile_table(), people.population_table(runs)],
+        ),
         "gains.md": (
             "How much of the gain is real",
             [table(runs) for table in (gains.speed_table, gains.hill_table, gains.smoothness_table)],
@@ -117,7 +121,7 @@ def require_ours(folder: Path) -> None:
 
 def inputs() -> list[Path]:
     """The data files that the results depend on."""
-    shared = [DATA / f"{name}.toml" for name in ("paper", "evidence", "text", "torque_velocity")]
+    shared = [DATA / f"{name}.toml" for name in ("paper", "evidence", "riders", "text", "torque_velocity")]
     return [*shared, *sorted((DATA / "designs").glob("*/*.toml")), *sorted((DATA / "moments").iterdir())]
 
 

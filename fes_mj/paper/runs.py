@@ -10,27 +10,29 @@ from fes_mj.design_file import DESIGNS, load_design
 from fes_mj.errors import AssemblyError
 from fes_mj.moments import GROUPS
 from fes_mj.moments_file import load_moments
+from fes_mj.population import Study, study_population
 from fes_mj.statics import QuasiStatic, quasi_static
 from fes_mj.torque_velocity import load_torque_velocity
 
-RUNS = 2 * len(DESIGNS) * len(GROUPS)  # simulations, with one leg and with two
+RUNS = (2 * len(GROUPS) + 1) * len(DESIGNS)  # simulations, with one leg and with two, and populations
 
 
 @dataclass(frozen=True)
 class Runs:
     """By (design, group): statics with identified and with printed dimensions (None where the print cannot turn), with
-    Hill's torque-velocity relation, and the checked simulations by (design, group, legs).
+    Hill's torque-velocity relation, and the checked simulations by (design, group, legs). Who can ride, by design.
     """
 
     static: dict[tuple[str, str], QuasiStatic]
     printed: dict[tuple[str, str], QuasiStatic | None]
     hill: dict[tuple[str, str], QuasiStatic]
     dynamic: dict[tuple[str, str, int], Case]
+    people: dict[str, Study]
 
 
 def run_all(done: Callable[[], None]) -> Runs:
-    """Solve and simulate everything; `done` is called after each of RUNS simulations."""
-    runs = Runs({}, {}, {}, {})
+    """Solve and simulate everything; `done` is called RUNS times."""
+    runs = Runs({}, {}, {}, {}, {})
     moments = {group: load_moments(group) for group in GROUPS}
     for name in DESIGNS:
         for group in GROUPS:
@@ -44,6 +46,8 @@ def run_all(done: Callable[[], None]) -> Runs:
             for legs in (1, 2):
                 runs.dynamic[name, group, legs] = Case(design, moments[group], legs=legs)
                 done()
+        runs.people[name] = study_population(load_design(name), moments[GROUPS[0]])
+        done()
     return runs
 
 

@@ -1,46 +1,53 @@
-"""Power of a design over the thighs and shanks of people."""
+"""Power of designs over the thighs and shanks of people."""
+
+from collections.abc import Sequence
+from typing import Any, Literal
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fes_mj.design import Rider
-from fes_mj.population import Study
-from fes_mj.style import FAINT, INK
+from fes_mj.population import PowerMap, Study
+from fes_mj.style import INK, literal
 
 _PERCENTILES = (5, 50, 95)
 _MARKERS = {"men": "s", "women": "o"}
 
 
-def population_figure(study: Study) -> Figure:
-    """Maps over thigh and shank, with the seat as drawn and with the best seat; white is where nobody can ride."""
-    figure = Figure(figsize=(8.4, 4.0), layout="constrained")
-    axes = figure.subplots(1, 2, sharex=True, sharey=True)
-    maps = {"seat as drawn": study.drawn, "seat moved": study.map}
-    powers = np.concatenate([each.power.ravel() for each in maps.values()])
-    low, high = np.nanpercentile(powers, [1, 100])
-    for ax, (title, found) in zip(axes, maps.items(), strict=True):
-        shading = "gouraud" if np.isfinite(found.power).all() else "nearest"  # the first cannot leave anything out
-        axis = 100 * found.thigh, 100 * found.shank
-        mesh = ax.pcolormesh(*axis, found.power.T, vmin=low, vmax=high, shading=shading)
-        for who, riders in study.riders.items():
-            thigh, shank = 100 * riders.legs.thigh, 100 * riders.legs.shank
-            ax.plot(thigh, shank, ".", color=INK, ms=1, alpha=0.25)
-            points = [riders.people.rider(percentile) for percentile in _PERCENTILES]
-            ax.plot(
-                [100 * each.thigh for each in points],
-                [100 * each.shank for each in points],
-                _MARKERS[who] + "-",
-                color=INK,
-                lw=0.8,
-                mfc="white",
-                label=f"{who}, percentiles {', '.join(map(str, _PERCENTILES))}",
-            )
-        ax.plot(100 * Rider.thigh, 100 * Rider.shank, "*", ms=11, color="white", mec=INK, label="the paper's rider")
-        ax.set_title(title, loc="left", weight="bold")
-        ax.set(xlabel="thigh, cm", facecolor="white")
-        ax.grid(visible=False)
-    axes[0].set_ylabel("shank, knee to pedal axle's level, cm")
+def population_figure(studies: Sequence[Study]) -> Figure:
+    """Maps over thigh and shank, a column a design: above with the seat as drawn, below with the best seat.
+
+    White is where nobody can ride.
+    """
+    figure = Figure(figsize=(2.6 + 2.2 * len(studies), 6.0), layout="constrained")
+    axes = figure.subplots(2, len(studies), squeeze=False, sharex=True, sharey=True)
+    powers = np.concatenate([found.power.ravel() for study in studies for found in (study.drawn, study.map)])
+    limits = {"vmin": np.nanmin(powers), "vmax": np.nanmax(powers)}
+    for column, study in zip(axes.T, studies, strict=True):
+        for ax, found, seat in zip(column, (study.drawn, study.map), ("as drawn", "moved"), strict=True):
+            mesh = _draw(ax, study, found, limits)
+            ax.set_title(literal(f"{study.design.name}, seat {seat}"), loc="left", weight="bold")
+            ax.label_outer()
     figure.colorbar(mesh, ax=axes, label="mean crank power, W")
-    handles, labels = axes[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=3, labelcolor=FAINT)
+    handles, labels = axes[0, 0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=1 if len(studies) == 1 else 3)
     return figure
+
+
+def _draw(ax: Axes, study: Study, found: PowerMap, limits: dict[str, Any]) -> Any:
+    """The map, the sample as dots, percentiles 5, 50 and 95 of thigh and shank, the paper's rider."""
+    # smooth where there is power everywhere; that way nothing could be left out
+    shading: Literal["gouraud", "nearest"] = "gouraud" if np.isfinite(found.power).all() else "nearest"
+    axes = 100 * found.thigh, 100 * found.shank
+    mesh = ax.pcolormesh(*axes, found.power.T, shading=shading, rasterized=True, **limits)
+    for who, riders in study.riders.items():
+        ax.plot(100 * riders.legs.thigh, 100 * riders.legs.shank, ",", color=INK, alpha=0.4)
+        some = [riders.people.rider(percentile) for percentile in _PERCENTILES]
+        legs = [100 * each.thigh for each in some], [100 * each.shank for each in some]
+        label = f"{who}, percentiles {', '.join(map(str, _PERCENTILES))}"
+        ax.plot(*legs, _MARKERS[who] + "-", color=INK, lw=0.8, ms=5, mfc="white", label=label)
+    ax.plot(100 * Rider.thigh, 100 * Rider.shank, "*", ms=9, color=INK, mfc="white", label="the paper's rider")
+    ax.set(xlabel="thigh, cm", ylabel="shank, knee to axle level, cm")
+    ax.grid(visible=False)
+    return mesh

@@ -6,6 +6,7 @@ moment of virtual work, which no free-body sign convention can bend; each mispri
 
 import math
 import re
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 
@@ -322,6 +323,31 @@ def test_e17_one_peak_and_no_inactive_zone_do_not_follow_from_table_1() -> None:
 
     evidence = load_evidence()
     assert 0 < allowed_share(of_group(evidence, "p1p2"), "p1p2", choose_hyperparameters(evidence)) < 0.05
+
+
+def test_e18_the_rider_is_no_person() -> None:
+    """R5 to the pedal axle's level is the median man's, the thigh nobody's; and whom the seats as drawn suit."""
+    from fes_mj.design_file import DESIGNS
+    from fes_mj.riders import populations
+
+    printed, man, woman = fes_mj.Rider(), *(populations()[who].rider(50) for who in ("man", "woman"))
+    assert man.shank == pytest.approx(printed.shank, abs=0.005)  # it is printed to 1 cm
+    assert printed.thigh > populations()["man"].rider(99.9).thigh
+    ankle = replace(man, shank=populations()["man"].shank.middle)
+    powers: dict[str, dict[str, float]] = {}
+    for who, rider in {"printed": printed, "man": man, "to the ankle": ankle, "woman": woman}.items():
+        powers[who] = {}
+        for name in DESIGNS:
+            with suppress(fes_mj.InputError):
+                design = replace(fes_mj.load_design(name), rider=rider)
+                powers[who][name] = fes_mj.quasi_static(design, fes_mj.load_moments("p1p2"), points=720).power_mean
+    assert {who: [*found] for who, found in powers.items()} == {
+        "printed": [*DESIGNS],
+        "man": ["r1", "r2", "d2"],
+        "to the ankle": [],
+        "woman": [],
+    }
+    assert 0.6 < powers["man"]["r2"] / powers["printed"]["r2"] < 0.7  # a third less
 
 
 def test_every_entry_of_the_page_has_a_test_and_the_other_way_round() -> None:

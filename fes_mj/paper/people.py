@@ -1,0 +1,40 @@
+"""Who can ride the paper's designs: people instead of the one rider that the paper fitted to 15 W."""
+
+from typing import Any
+
+from fes_mj.design import Rider
+from fes_mj.paper.captions import captioned
+from fes_mj.paper.runs import Runs
+from fes_mj.population import SEATS
+from fes_mj.riders import populations
+from fes_mj.table import Table
+
+
+def percentile_table() -> Table:
+    """Thigh and shank of people beside the paper's."""
+    rows: list[tuple[Any, ...]] = [
+        (who, *(100 * length for each in (5, 50, 95) for length in _legs(people.rider(each))), people.correlation)
+        for who, people in populations().items()
+    ]
+    return captioned(
+        "people", [*rows, ("the paper's", None, None, *(100 * x for x in _legs(Rider())), None, None, None)]
+    )
+
+
+def _legs(rider: Rider) -> tuple[float, float]:
+    return rider.thigh, rider.shank
+
+
+def population_table(runs: Runs) -> Table:
+    """Share of people who can ride, and their power, with the seat as drawn and moved."""
+    rows = []
+    for name, study in runs.people.items():
+        content = study.summary()
+        for who in study.riders:
+            for seat in SEATS:
+                powers = (content[f"power_{which}_{seat}_W"][who] for which in ("mean", "p10"))
+                share = 100 * content[f"share_{seat}"][who]
+                rows.append((name.upper(), who, {"unmoved": "as drawn", "fitted": "moved"}[seat], share, *powers))
+    error = max(study.map_error for study in runs.people.values())
+    sizes = {str(study.summary()["samples"]) for study in runs.people.values()}
+    return captioned("population", rows, samples=", ".join(sizes), error=f"{error:.2f}")
