@@ -7,7 +7,7 @@ import pytest
 
 from fes_mj.design_file import load_design
 from fes_mj.errors import InputError
-from fes_mj.riders import Population, leg_mass_after_injury, populations, preset
+from fes_mj.riders import _SCORE_95, Population, leg_mass_after_injury, populations, preset
 from fes_mj.segments import inertias
 from tests.test_design_file import written
 
@@ -42,6 +42,12 @@ def test_a_sample_has_the_percentiles_and_that_of_the_leg_which_no_draw_was_told
         found = np.percentile(values, [5, 50, 95])
         slack = 0.003 if measure is people.leg else 0.0  # m: a sum of lognormal halves has none of the measured shape
         assert np.all(np.abs(found - measure) < 3.5 * error / np.sqrt(SIZE) + rounding + slack)
+
+
+def test_the_percentile_95_of_the_normal_distribution() -> None:
+    from statistics import NormalDist
+
+    assert NormalDist().inv_cdf(0.95) == pytest.approx(_SCORE_95, rel=1e-14)
 
 
 def test_a_stature_scales_the_median(people: Population) -> None:
