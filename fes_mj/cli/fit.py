@@ -67,7 +67,7 @@ def fit(
         With --population: a picture (.png) of the power over thigh and shank.
     """
     loaded, joint_moments, limits = load_design(design, dims), moments.load_moments(), seat.load()
-    inputs = [Path(source) for source in (design, moments.moments) if source]
+    inputs = [Path(design), *moments.moment_files()]
     crank_speed(None, loaded)
     if population:
         given = {"--out": out, **{f"--{key}": value for key, value in vars(who).items()}}

@@ -1,12 +1,13 @@
 """Power of designs over the thighs and shanks of people."""
 
 from collections.abc import Sequence
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from fes_mj.arrays import FloatArray
 from fes_mj.design import Rider
 from fes_mj.population import PowerMap, Study
 from fes_mj.style import INK, literal
@@ -20,13 +21,13 @@ def population_figure(studies: Sequence[Study]) -> Figure:
 
     White is where nobody can ride.
     """
-    figure = Figure(figsize=(2.6 + 2.2 * len(studies), 6.0), layout="constrained")
+    figure = Figure(figsize=(2.6 + 1.9 * len(studies), 5.4), layout="constrained")
     axes = figure.subplots(2, len(studies), squeeze=False, sharex=True, sharey=True)
     powers = np.concatenate([found.power.ravel() for study in studies for found in (study.drawn, study.map)])
-    limits = {"vmin": np.nanmin(powers), "vmax": np.nanmax(powers)}
+    levels = np.arange(np.floor(np.nanmin(powers)), np.ceil(np.nanmax(powers)) + 1)
     for column, study in zip(axes.T, studies, strict=True):
         for ax, found, seat in zip(column, (study.drawn, study.map), ("as drawn", "moved"), strict=True):
-            mesh = _draw(ax, study, found, limits)
+            mesh = _draw(ax, study, found, levels)
             ax.set_title(literal(f"{study.design.name}, seat {seat}"), loc="left", weight="bold")
             ax.label_outer()
     figure.colorbar(mesh, ax=axes, label="mean crank power, W")
@@ -35,12 +36,9 @@ def population_figure(studies: Sequence[Study]) -> Figure:
     return figure
 
 
-def _draw(ax: Axes, study: Study, found: PowerMap, limits: dict[str, Any]) -> Any:
+def _draw(ax: Axes, study: Study, found: PowerMap, levels: FloatArray) -> Any:
     """The map, the sample as dots, percentiles 5, 50 and 95 of thigh and shank, the paper's rider."""
-    # smooth where there is power everywhere; that way nothing could be left out
-    shading: Literal["gouraud", "nearest"] = "gouraud" if np.isfinite(found.power).all() else "nearest"
-    axes = 100 * found.thigh, 100 * found.shank
-    mesh = ax.pcolormesh(*axes, found.power.T, shading=shading, rasterized=True, **limits)
+    mesh = ax.contourf(100 * found.thigh, 100 * found.shank, found.power.T, levels)
     for who, riders in study.riders.items():
         ax.plot(100 * riders.legs.thigh, 100 * riders.legs.shank, ",", color=INK, alpha=0.4)
         some = [riders.people.rider(percentile) for percentile in _PERCENTILES]
