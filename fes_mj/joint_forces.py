@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from fes_mj.arrays import ComplexArray
-from fes_mj.inverse_dynamics import body_loads
+from fes_mj.loads import body_loads
 from fes_mj.riders import leg_mass_after_injury
 from fes_mj.segments import GRAVITY
 from fes_mj.statics import QuasiStatic, equilibrium

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import fes_mj
-from fes_mj.inverse_dynamics import body_loads
 from fes_mj.joint_forces import JointForces, peaks
+from fes_mj.loads import body_loads
 from fes_mj.riders import leg_mass_after_injury
 from fes_mj.segments import GRAVITY
 from fes_mj.statics import quasi_static
