@@ -19,8 +19,8 @@ from fes_mj.geometry import LEAST_CLEARANCE, grashof_margin, require_assembly
 from fes_mj.moments import JointMoments
 from fes_mj.statics import QuasiStatic, quasi_static
 
-# What a degree outside the moments' range counts as, W/deg: several times what any seat of the five designs gains by a
-# degree more, so that the range comes first and power second.
+# What a degree outside the moments' range counts as, W/deg. A choice: the range comes first, power second. A degree of
+# which nothing is known would have to win a third of a design's power.
 OUTSIDE_COST = 10.0
 # What a seat's way counts as, W/m: of seats that are as good the nearest is taken, and 20 cm are worth 0.1 W.
 WAY_COST = 0.5

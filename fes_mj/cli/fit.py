@@ -47,7 +47,7 @@ def fit(
 ) -> int:
     """Find the seat with which a rider can ride a design, joints within their moments' range, with the most power.
 
-    Exit code 1 if no seat within the limits suits.
+    That no seat within the limits suits is a result as well: what lacks, where in the turn, and what would help.
 
     Parameters
     ----------
@@ -86,7 +86,7 @@ def fit(
         _print(result)
         if out and result.fits:
             say(f"design file: {out}")
-    return 0 if result.fits else 1
+    return 0
 
 
 def _refuse(given: dict[str, Any], why: str) -> None:

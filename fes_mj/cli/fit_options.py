@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Annotated, Literal
 
 from cyclopts import Parameter
 
@@ -13,6 +13,7 @@ from fes_mj.fit import SeatLimits
 from fes_mj.riders import Population, populations
 from fes_mj.variables import VARIABLES
 
+_Range = Annotated[tuple[float, float], Parameter(negative="")]
 _FARTHEST = {"forward": (1.0, "m"), "up": (1.0, "m"), "recline": (90.0, "deg")}
 
 
@@ -95,9 +96,9 @@ class SeatOptions:
         Change of the seat angle, deg.
     """
 
-    forward: tuple[float, float] = (-0.05, 0.30)
-    up: tuple[float, float] = (-0.15, 0.15)
-    recline: tuple[float, float] = (-20.0, 20.0)
+    forward: _Range = (-0.05, 0.30)
+    up: _Range = (-0.15, 0.15)
+    recline: _Range = (-20.0, 20.0)
 
     def load(self) -> SeatLimits:
         """The limits. Raises InputError for a range that is empty, or farther than any seat goes."""

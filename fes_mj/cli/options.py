@@ -41,7 +41,7 @@ class MomentsOptions:
 
     group: Literal["p1p2", "p1p3"] | None = None
     # a name may begin like a JSON list
-    moments: Annotated[list[Path] | None, Parameter(json_list=False)] = None
+    moments: Annotated[list[Path] | None, Parameter(json_list=False, negative="")] = None
 
     def load_moments(self, legs: int = 1) -> JointMoments:
         """The joint moments that the options name; says what looks misread. Raises InputError for what is unusable."""

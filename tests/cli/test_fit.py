@@ -32,7 +32,7 @@ def test_not_fitting_is_a_result_and_writes_nothing(tmp_path: Path, capsys: pyte
     out = tmp_path / "mine.toml"
     arguments = ("fit", "d1", "--stature", "1.25", "--sex", "female", "--forward", "0", "0.1", "-o", str(out))
     code, content = answer(capsys, *arguments)
-    assert (code, content["fits"], content["design_file"]) == (1, False, None)
+    assert (code, content["fits"], content["design_file"]) == (0, False, None)
     assert not out.exists()
     text = result(capsys, *arguments)[1]
     assert "Does not fit: d1: thigh and shank cannot close at crank angle" in text
