@@ -27,19 +27,26 @@ class TorqueVelocity:
     def factor(self, joint: str, speed: Any) -> FloatArray:
         """Moment per moment at rest; speed in rad/s along the moment, negative where it lengthens the muscle."""
         relative = np.asarray(speed) / self.max_speed[joint]
-        return np.asarray(self._hyperbolas(np.clip(relative, 0, 1), np.maximum(-relative, 0)))
+        return np.asarray(self._factor(np.clip(relative, 0, 1), np.maximum(-relative, 0)))
 
     def float_factor(self, joint: str, speed: float) -> float:
         """The same for a plain float, without numpy."""
         relative = speed / self.max_speed[joint]
-        return float(self._hyperbolas(min(max(relative, 0.0), 1.0), max(-relative, 0.0)))
+        return float(self._factor(min(max(relative, 0.0), 1.0), max(-relative, 0.0)))
 
-    def _hyperbolas(self, shortening: Any, lengthening: Any) -> Any:
-        """Hill (1938) while shortening, a hyperbola of the same slope at rest while lengthening. One speed is zero."""
-        excess = self.eccentric_plateau - 1
-        steepness = (1 + 1 / self.curvature) / excess
-        concentric = (1 - shortening) / (1 + shortening / self.curvature)
-        return concentric + excess * (1 - 1 / (1 + steepness * lengthening))
+    def _factor(self, shortening: Any, lengthening: Any) -> Any:
+        return hill_factor(self.curvature, self.eccentric_plateau, shortening, lengthening)
+
+
+def hill_factor(curvature: float, eccentric_plateau: float, shortening: Any, lengthening: Any) -> Any:
+    """Hill (1938) while shortening, a hyperbola of the same slope at rest while lengthening.
+
+    Speeds are per the largest, not negative, and one of them is zero; shortening is at most 1.
+    """
+    excess = eccentric_plateau - 1
+    steepness = (1 + 1 / curvature) / excess
+    concentric = (1 - shortening) / (1 + shortening / curvature)
+    return concentric + excess * (1 - 1 / (1 + steepness * lengthening))
 
 
 @cache

@@ -3,3 +3,4 @@
 import math
 
 RPM = math.pi / 30  # rad/s per rpm
+KMH = 1 / 3.6  # m/s per km/h

@@ -13,6 +13,7 @@ PURPOSE = "Does a pedalling linkage for FES cycling deliver its power when legs 
 EXIT_CODES = "Exit codes: 0 agrees, 1 does not, 2 bad input, 3 a needed part is missing, 130 Ctrl-C, 143 SIGTERM."
 COMMANDS = {
     "simulate": "Simulate a design in MuJoCo and compare its crank power with statics.",
+    "ride": "Ride a design on a road: does it start, keep going, how fast, up which slope?",
     "static": "Mean crank power of a design by statics, without MuJoCo.",
     "optimize": "Find linkages with more crank power, within the paper's limits, and simulate them.",
     "fit": "Find the seat for a rider, or who of a population can ride.",

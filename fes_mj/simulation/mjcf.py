@@ -77,7 +77,7 @@ def build_mjcf(
     root = spec.worldbody.add_body(name="tricycle", childclass="tricycle")
     masses = {body: _scaled(part, mass_scale) for body, part in inertias(design).items()}
     masses["crank"] = combine(*(_turned(masses["crank"], -leg.lag) for leg in LEGS[legs]))
-    crank = add_body(root, "crank", _position(design.linkage.crank_centre), masses["crank"])
+    crank = add_body(root, "crank", position(design.linkage.crank_centre), masses["crank"])
     crank.add_site(name="crank_torque")
     state = {"crank": (0.0, cadence)}
     for leg in LEGS[legs]:
@@ -87,7 +87,7 @@ def build_mjcf(
     if drawn:
         appearance.draw(spec, design, LEGS[legs])
     if driven:
-        _add_motors(spec, LEGS[legs])
+        add_motors(spec, LEGS[legs])
         _hold_cadence(spec, integrator)
     _add_sensors(spec)
     _add_keyframe(spec, state)
@@ -141,7 +141,7 @@ def _set_defaults(spec: Spec, loop_solref: tuple[float, float]) -> None:
     appearance.define_parts(spec, shared)
 
 
-def _position(point: complex, lateral: float = 0.0) -> tuple[float, float, float]:
+def position(point: complex, lateral: float = 0.0) -> tuple[float, float, float]:
     return (float(np.real(point)) + NO_MINUS, lateral, float(np.imag(point)) + NO_MINUS)
 
 
@@ -163,7 +163,7 @@ def add_body(
     pose = -(turned + sense * angle) / 2 + NO_MINUS  # half the turn about +y
     body = parent.add_body(name=name, pos=pos, quat=(math.cos(pose), 0, math.sin(pose), 0))
     # only the moment about the plane's normal matters; equal ones satisfy the triangle inequality
-    body.mass, body.ipos, body.inertia = inertia.mass, _position(inertia.centre), [inertia.moment] * 3
+    body.mass, body.ipos, body.inertia = inertia.mass, position(inertia.centre), [inertia.moment] * 3
     body.explicitinertial = True
     hinge = body.add_joint(name=joint or name, ref=angle)
     if sense < 0:
@@ -187,11 +187,11 @@ def _add_leg(
     def add(parent: Spec, body: str, pos: tuple[float, float, float], joint: str, **pose: Any) -> Spec:
         return add_body(parent, prefix + body, pos, masses[body], joint=prefix + joint, angle=angle[joint], **pose)
 
-    thigh = add(root, "thigh", _position(0j, leg.lateral), "hip", turned=linkage.seat_angle)
+    thigh = add(root, "thigh", position(0j, leg.lateral), "hip", turned=linkage.seat_angle)
     # extension turns the shank clockwise; at knee angle 0 it would lie folded along the thigh
     add(thigh, "shank", (design.rider.thigh, 0, 0), "knee", turned=math.pi - float(design.boot_angle), sense=-1)
     if "rocker" in masses:
-        rocker = add(root, "rocker", _position(linkage.ground, leg.lateral), "rocker")
+        rocker = add(root, "rocker", position(linkage.ground, leg.lateral), "rocker")
         add(rocker, "coupler", (linkage.rocker, 0, 0), "coupler")
     for cut in CUTS:
         if cut in linkage.architecture.joints:
@@ -205,9 +205,9 @@ def _close_loop(spec: Spec, design: Design, leg: Leg, cut: str, anchors: str) ->
         carrier = cut == "pedal" and body == architecture.pedal_body
         point = design.link_lengths[body] * (design.linkage.pedal_offset if carrier else 1.0)
         if body == "crank":  # shared by the legs: theirs are two arms of it, in two planes
-            owner, pos = "crank", _position(point * np.exp(-1j * leg.lag), leg.lateral)
+            owner, pos = "crank", position(point * np.exp(-1j * leg.lag), leg.lateral)
         else:
-            owner, pos = leg.prefix + body, _position(point)
+            owner, pos = leg.prefix + body, position(point)
         owners.append(owner)
         sites.append(spec.body(owner).add_site(name=f"{leg.prefix}{body}_{cut}", pos=pos))
     equality = spec.add_equality(spec.find_default("tricycle"), name=leg.prefix + cut, type=mujoco.mjtEq.mjEQ_CONNECT)
@@ -223,7 +223,7 @@ def _close_loop(spec: Spec, design: Design, leg: Leg, cut: str, anchors: str) ->
     gap.objname, gap.refname = (each.name for each in sites)
 
 
-def _add_motors(spec: Spec, legs: tuple[Leg, ...]) -> None:
+def add_motors(spec: Spec, legs: tuple[Leg, ...]) -> None:
     """Joint motors, N m, extension positive."""
     for leg in legs:
         for joint in (leg.prefix + "hip", leg.prefix + "knee"):

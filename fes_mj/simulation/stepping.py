@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from copy import copy
-from typing import Any, NamedTuple, TypeAlias
+from typing import Any, NamedTuple, TypeAlias, cast
 
 import mujoco
 import numpy as np
@@ -31,6 +31,8 @@ class Run(NamedTuple):
 # Steps a model so many times; gives the sensor rows of each step, a row that is left free, and recorded fields of some.
 Records: TypeAlias = dict[str, FloatArray]
 Loop: TypeAlias = Callable[[mujoco.MjModel, mujoco.MjData, int], tuple[FloatArray, Records]]
+# Given a model, its data and a view of the speeds at the positions' own time: what sets the controls before each step.
+Control: TypeAlias = Callable[[mujoco.MjModel, mujoco.MjData, Any], Callable[[], None]]
 # Makes a loop that drives the given joints (name -> "knee" or "hip") by a torque map.
 LoopMaker: TypeAlias = Callable[[TorqueMap, dict[str, str]], Loop]
 
@@ -50,12 +52,26 @@ def recording_loop(
     record: fields of MjData to read, each of constant size, after the first and then after each `every` steps.
     """
 
+    def control(model: mujoco.MjModel, data: mujoco.MjData, speeds: Any) -> Callable[[], None]:
+        position_of, ctrl = memoryview(data.qpos), cast("Any", memoryview(data.ctrl))
+        drives = [(*drive_addresses(model, name), moment) for name, moment in feedback.items()]
+
+        def act() -> None:
+            for actuator, position, speed, moment in drives:
+                ctrl[actuator] = moment(position_of[position], speeds[speed])
+
+        return act
+
+    return controlled_loop(control, record, every)
+
+
+def controlled_loop(control: Control, record: tuple[str, ...] = (), every: int = FORCE_EVERY) -> Loop:
+    """A loop that asks `control` before each step; otherwise as recording_loop."""
+
     def loop(model: mujoco.MjModel, data: mujoco.MjData, count: int) -> tuple[FloatArray, Records]:
         # plain floats through memory views and rows as bytes cost half of numpy scalars and row assignment
         qvel, acceleration, lead, held = data.qvel, data.qacc, np.empty(model.nv), np.empty(model.nv)
-        position_of, speed_of = memoryview(data.qpos), memoryview(lead.data)
-        ctrl: Any = memoryview(data.ctrl)
-        drives = [(*drive_addresses(model, name), moment) for name, moment in feedback.items()]
+        act = control(model, data, memoryview(lead.data))
         first, second, read, half = mujoco.mj_step1, mujoco.mj_step2, data.sensordata.tobytes, model.opt.timestep / 2
         velocities, bias_force, bias = mujoco.mj_comVel, mujoco.mj_rne, data.qfrc_bias
         width, place = data.sensordata.nbytes, 0
@@ -66,8 +82,7 @@ def recording_loop(
             # centrifugal forces are of second order
             np.multiply(acceleration, half, out=lead)
             np.add(lead, qvel, out=lead)
-            for actuator, position, speed, moment in drives:
-                ctrl[actuator] = moment(position_of[position], speed_of[speed])
+            act()
             first(model, data)
             held[:] = qvel
             qvel[:] = lead
@@ -95,7 +110,8 @@ def drive_addresses(model: mujoco.MjModel, name: str) -> tuple[int, int, int]:
 def run_loop(model: mujoco.MjModel, loop: Loop, steps: int, pre_roll: int = PRE_ROLL) -> Run:
     """Pre-roll from the keyframe, then record so many steps of `loop`. Raises UnstableError."""
     model = copy(model)
-    model.body_invweight0[:] *= LOOP_SOFTNESS
+    for inverse_weights in (model.body_invweight0, model.dof_invweight0, model.tendon_invweight0):
+        inverse_weights *= LOOP_SOFTNESS
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, 0)
     previous = mujoco.get_mju_user_warning()

@@ -1,6 +1,6 @@
 """The video of a cross-check: the moving legs and linkage beside the crank power over the turn."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -11,10 +11,11 @@ from fes_mj import kinematics
 from fes_mj.arrays import FloatArray, IntArray, Picture
 from fes_mj.console import progress_bar
 from fes_mj.crosscheck import Case
-from fes_mj.design import BODIES
+from fes_mj.design import BODIES, Design
 from fes_mj.errors import InputError, MissingPartError, require_extra
 from fes_mj.files import replacing
 from fes_mj.geometry import bounding_box
+from fes_mj.simulation.appearance import Spec
 from fes_mj.simulation.bench import Simulation
 from fes_mj.simulation.mjcf import build_mjcf
 from fes_mj.style import FAINT, INK
@@ -31,61 +32,82 @@ LABEL_CLEARANCE, LABEL_SPACING = 0.22, 0.26  # m: of the rows of names from the 
 
 
 def render_video(case: Case, path: Path, quiet: bool = False) -> None:
-    """Write an H.264 video of one measured turn, shown REPEATS times, to `path`.
-
-    Raises MissingPartError if OpenGL, ffmpeg or a package of the extra "video" is missing, InputError if the file
-    cannot be written.
-    """
-    mediapy = require_extra("video", "mediapy", "imageio_ffmpeg", "matplotlib", "PIL")
+    """Write an H.264 video of one measured turn, shown REPEATS times, to `path`; raises as write_video."""
+    require_video()
     from fes_mj.viewing.power_panel import PowerPanel
 
+    run = case.simulation
+    shown = np.linspace(0, len(run.crank_angle) // run.turns, FRAMES, endpoint=False).astype(int)
+    panel = PowerPanel(case, PLOT_WIDTH, HEIGHT)
+    pictures = (
+        np.hstack([scene, panel.frame(int(step))]) for step, scene in zip(shown, scenes(run, shown), strict=True)
+    )
+    write_video(path, pictures, FRAMES, quiet, REPEATS)
+
+
+def require_video() -> None:
+    """Raise MissingPartError if OpenGL, ffmpeg or a package of the extra "video" is missing."""
+    mediapy = require_extra("video", "mediapy", "imageio_ffmpeg", "matplotlib", "PIL")
     use_offscreen_gl()
     try:
         mediapy.set_ffmpeg(require_extra("video", "imageio_ffmpeg").get_ffmpeg_exe())
     except RuntimeError:
         raise MissingPartError("there is no ffmpeg; it comes with: pip install 'fes-mj[video]'") from None
-    run = case.simulation
-    shown = np.linspace(0, len(run.crank_angle) // run.turns, FRAMES, endpoint=False).astype(int)
-    panel, shape = PowerPanel(case, PLOT_WIDTH, HEIGHT), (HEIGHT, SCENE_WIDTH + PLOT_WIDTH)
-    with progress_bar("rendering, frames", FRAMES, quiet) as advance, replacing(path) as beside:
+
+
+def write_video(path: Path, pictures: Iterable[Picture], count: int, quiet: bool = False, repeats: int = 1) -> None:
+    """Write `count` pictures, shape (HEIGHT, SCENE_WIDTH + PLOT_WIDTH, 3), as video. Raises InputError if it cannot."""
+    mediapy = require_extra("video", "mediapy")
+    with progress_bar("rendering, frames", count, quiet) as advance, replacing(path) as beside:
         frames = []
-        for step, scene in zip(shown, scenes(run, shown), strict=True):
-            frames.append(np.hstack([scene, panel.frame(int(step))]))
+        for picture in pictures:
+            frames.append(picture)
             advance(1)
         try:
+            shape = (HEIGHT, SCENE_WIDTH + PLOT_WIDTH)
             with mediapy.VideoWriter(beside, shape, fps=FRAMES_PER_SECOND, crf=20) as writer:
-                for frame in frames * REPEATS:
+                for frame in frames * repeats:
                     writer.add_image(frame)
         except (RuntimeError, BrokenPipeError) as error:  # the encoder ended, with words or without
             reason = str(error).rpartition("] ")[2].strip()
             raise InputError(f"{path}: cannot be written: the encoder stopped: {reason}") from None
 
 
-def scenes(run: Simulation, steps: IntArray) -> Iterator[Picture]:
-    """Labelled pictures of the simulated model at the given steps, shape (HEIGHT, SCENE_WIDTH, 3)."""
-    spec = build_mjcf(run.design, cadence=run.cadence, timestep=run.timestep, legs=len(run.legs))
+def set_stage(spec: Spec) -> None:
+    """Light, sky and picture size of a video."""
     spec.visual.global_.offwidth, spec.visual.global_.offheight = SCENE_WIDTH, HEIGHT
     spec.visual.global_.fovy = FIELD_OF_VIEW
     spec.visual.headlight.ambient, spec.visual.headlight.diffuse = [0.55] * 3, [0.5] * 3
     sky = spec.add_texture(name="sky", type=mujoco.mjtTexture.mjTEXTURE_SKYBOX, width=64, height=64)
     sky.builtin, sky.rgb1, sky.rgb2 = mujoco.mjtBuiltin.mjBUILTIN_GRADIENT, [1, 1, 1], [0.86, 0.89, 0.93]
+
+
+def scenes(run: Simulation, steps: IntArray) -> Iterator[Picture]:
+    """Labelled pictures of the simulated model at the given steps, shape (HEIGHT, SCENE_WIDTH, 3)."""
+    spec = build_mjcf(run.design, cadence=run.cadence, timestep=run.timestep, legs=len(run.legs))
+    set_stage(spec)
     model = spec.compile()
-    data, camera, labels = mujoco.MjData(model), _camera(run), _Labels(run)
+    data, camera, labels = mujoco.MjData(model), turn_camera(run.design), _Labels(run)
     addresses = {name: model.joint(name).qposadr[0] for name in run.joint_angle}
     with mujoco.Renderer(model, HEIGHT, SCENE_WIDTH) as renderer:
         for step in steps:
             for name, address in addresses.items():
                 data.qpos[address] = run.joint_angle[name][step]
-            mujoco.mj_kinematics(model, data)
-            mujoco.mj_comPos(model, data)
-            mujoco.mj_camlight(model, data)
+            place(model, data)
             renderer.update_scene(data, camera)
             yield labels.draw(renderer.render(), data, renderer.scene.camera)
 
 
-def _camera(run: Simulation) -> mujoco.MjvCamera:
+def place(model: mujoco.MjModel, data: mujoco.MjData) -> None:
+    """Put everything that is drawn where the joint positions have it."""
+    mujoco.mj_kinematics(model, data)
+    mujoco.mj_comPos(model, data)
+    mujoco.mj_camlight(model, data)
+
+
+def turn_camera(design: Design) -> mujoco.MjvCamera:
     """A fixed camera that sees every joint over the whole turn, with room for the names."""
-    low, high = bounding_box(kinematics.positions(run.design, kinematics.FULL_TURN))
+    low, high = bounding_box(kinematics.positions(design, kinematics.FULL_TURN))
     centre, size = (low + high) / 2, max((high - low).real, (high - low).imag) + MARGIN
     camera = mujoco.MjvCamera()
     camera.lookat = (centre.real, 0.0, centre.imag)

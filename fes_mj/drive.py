@@ -1,0 +1,64 @@
+"""What the muscles are told: joint moments commanded by crank angle, as a stimulator reads it off the crank's encoder.
+
+The torque map takes the direction of a joint from the sign of its speed; here it is that of forward pedalling, whatever
+the crank is doing. Speed dependence and the muscles' lag come on top.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fes_mj import kinematics
+from fes_mj.arrays import BoolArray, FloatArray
+from fes_mj.design import Design
+from fes_mj.joints import JOINTS, PerJoint
+from fes_mj.moments import JointMoments
+from fes_mj.torque_map import GRID, TABLE_SIZE, TorqueMap, torque_map
+
+POINTS = TABLE_SIZE  # crank angles of a table over a turn
+
+
+@dataclass(frozen=True, eq=False)
+class Drive:
+    """One turn of one leg over uniform crank angles, shape (POINTS,).
+
+    command: N m, of each joint at rest: with a torque-velocity relation the moment that the muscle would have at rest.
+    breaks: whether a joint turns round, or leaves the range of the moments, between a crank angle and the next.
+    """
+
+    command: PerJoint[FloatArray]
+    breaks: BoolArray
+    motion: kinematics.Motion
+
+
+def drive(design: Design, moments: JointMoments, lag: float = 0.0) -> Drive:
+    """Commands for a design. lag: time constant of the muscles' answer, s.
+
+    With a lag the command is the one whose filtered answer, on the tricycle of the measurement at its cadence, is the
+    map: u = m + lag * cadence * dm/da over that tricycle's crank angle a.
+    """
+    torque = torque_map(moments)
+    motion = kinematics.solve(design, np.linspace(0, 2 * np.pi, POINTS, endpoint=False))
+    angle, rate = motion.joint_angle, motion.joint_rate
+
+    def command(joint: str) -> FloatArray:
+        table = at_rest(torque, joint)
+        step, turn = GRID[1], table[:POINTS]
+        lead = lag * torque.reference.cadence * (np.roll(turn, -1) - np.roll(turn, 1)) / (2 * step)
+        source = torque.source_angle(joint, angle[joint], rate[joint])
+        position = np.mod(source, 2 * np.pi) / step
+        return np.asarray(np.interp(position, np.arange(POINTS), turn + lead, period=POINTS))
+
+    sides = [rate[joint] >= 0 for joint in JOINTS] + [
+        torque.reference.excess(joint, angle[joint]) == 0 for joint in JOINTS
+    ]
+    breaks = np.logical_or.reduce([side != np.roll(side, -1) for side in sides])
+    return Drive(PerJoint.of(command), breaks, motion)
+
+
+def at_rest(torque: TorqueMap, joint: str) -> FloatArray:
+    """Moment of the map at every crank angle of GRID as it would be at rest, N m."""
+    table, relation = torque.table[joint], torque.moments.torque_velocity
+    if relation is None:
+        return table
+    return table / relation.factor(joint, np.sign(table) * torque.reference_speed[joint])

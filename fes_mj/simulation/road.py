@@ -1,0 +1,252 @@
+"""The ride in MuJoCo: the tricycle slides along the road with its legs hung on it, and nothing holds the cadence."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, cast
+
+import mujoco
+import numpy as np
+from scipy.integrate import cumulative_trapezoid
+
+from fes_mj import kinematics
+from fes_mj.arrays import FloatArray
+from fes_mj.design import TWO_LEGS
+from fes_mj.drive import POINTS, drive
+from fes_mj.extrapolation import require_motion
+from fes_mj.joints import JOINTS
+from fes_mj.ride import Ride, Trace
+from fes_mj.segments import GRAVITY
+from fes_mj.simulation.appearance import Spec
+from fes_mj.simulation.bench import joint_drives
+from fes_mj.simulation.mjcf import LOOP_SOLIMP, LOOP_SOLREF, add_motors, build_mjcf, joint_motion
+from fes_mj.simulation.sensors import Sensors
+from fes_mj.simulation.stepping import PRE_ROLL, Control, Loop, Run, controlled_loop, drive_addresses, run_loop
+from fes_mj.torque_velocity import hill_factor
+
+ROAD, DRIVETRAIN = "road", "drivetrain"  # the joint along the road, m; the tendon road / travel - crank, rad
+# A quarter of a millisecond: 360 steps a turn at 660 rpm, and at 60 rpm as fine as on the bench.
+TIMESTEP = 2.5e-4  # s
+# MuJoCo asks whether a tendon is shorter than its limit plus this. At zero, rounding would open the freewheel.
+TOUCH = 1e-9  # rad
+_FORWARD = (-1.0, 0.0, 0.0)
+_FAR = 1e6  # rad, an upper limit that is never reached: MuJoCo has no one-sided range
+
+
+def build_road_mjcf(ride: Ride, timestep: float = TIMESTEP, drawn: bool = True, **options: Any) -> Spec:
+    """The model of build_mjcf with both legs (same options), set on the road at the ride's start.
+
+    The tricycle gets its mass and the slide joint `road`; rims are its armature, rolling resistance its friction, air
+    its damping. The slope tilts gravity. The tendon `drivetrain` is road less crank: a fixed gear holds its length; a
+    freewheel only keeps it from becoming shorter, and whoever steps the model raises that limit to the length reached.
+    """
+    spec = build_mjcf(ride.design, legs=len(TWO_LEGS), drawn=drawn, driven=False, **options)
+    spec.option.timestep = timestep
+    spec.comment = f"{ride.name}: both legs on a tricycle that rides"
+    spec.option.gravity = (GRAVITY * math.sin(ride.road.angle), 0.0, -GRAVITY * math.cos(ride.road.angle))
+    load = ride.load
+    body = spec.body("tricycle")
+    body.mass, body.inertia, body.explicitinertial = load.body_mass, [load.body_mass] * 3, True  # it never turns
+    slide = body.add_joint(name=ROAD, type=mujoco.mjtJoint.mjJNT_SLIDE, axis=_FORWARD)
+    slide.armature, slide.frictionloss = ride.road.rolling_mass, load.rolling
+    slide.damping = (0.0, load.drag, 0.0)
+    slide.solref_friction, slide.solimp_friction = LOOP_SOLREF, LOOP_SOLIMP
+    _add_drivetrain(spec, ride)
+    add_motors(spec, TWO_LEGS)
+    _add_sensors(spec, ride)
+    _replace_keyframe(spec, ride)
+    return spec
+
+
+def _add_drivetrain(spec: Spec, ride: Ride) -> None:
+    tendon = spec.add_tendon(name=DRIVETRAIN)
+    tendon.wrap_joint(ROAD, 1 / ride.travel)
+    tendon.wrap_joint("crank", -1.0)
+    if ride.fixed:
+        gear = spec.add_equality(name=DRIVETRAIN, type=mujoco.mjtEq.mjEQ_TENDON, objtype=mujoco.mjtObj.mjOBJ_TENDON)
+        gear.name1, gear.data[0] = DRIVETRAIN, -ride.start
+        gear.solref, gear.solimp = LOOP_SOLREF, LOOP_SOLIMP
+    else:
+        tendon.limited, tendon.range, tendon.margin = mujoco.mjtLimited.mjLIMITED_TRUE, (-ride.start, _FAR), TOUCH
+        tendon.solref_limit, tendon.solimp_limit = LOOP_SOLREF, LOOP_SOLIMP
+
+
+def _add_sensors(spec: Spec, ride: Ride) -> None:
+    kinds, objects = mujoco.mjtSensor, mujoco.mjtObj
+    for name, kind in ((f"{ROAD}_angle", kinds.mjSENS_JOINTPOS), (f"{ROAD}_speed", kinds.mjSENS_JOINTVEL)):
+        spec.add_sensor(name=name, type=kind, objtype=objects.mjOBJ_JOINT, objname=ROAD)
+    for joint in joint_drives(TWO_LEGS):
+        spec.add_sensor(
+            name=f"{joint}_moment", type=kinds.mjSENS_ACTUATORFRC, objtype=objects.mjOBJ_ACTUATOR, objname=joint
+        )
+    if not ride.fixed:
+        spec.add_sensor(
+            name=DRIVETRAIN, type=kinds.mjSENS_TENDONLIMITFRC, objtype=objects.mjOBJ_TENDON, objname=DRIVETRAIN
+        )
+
+
+def _replace_keyframe(spec: Spec, ride: Ride) -> None:
+    """Exact position and velocity at the start of the ride."""
+    spec.delete(spec.key("start"))
+    model = spec.compile()
+    qpos, qvel = np.zeros(model.nq), np.zeros(model.nv)
+    for joint, (angle, speed) in _start_state(ride).items():
+        address = model.joint(joint).qposadr[0]
+        qpos[address], qvel[address] = angle, speed
+    spec.add_key(name="start", qpos=qpos, qvel=qvel)
+
+
+def _start_state(
+    ride: Ride, before: float = 0.0, gain: dict[str, float] | None = None
+) -> dict[str, tuple[float, float]]:
+    """Position of every joint, and its mean speed over the time `before` (s) that; with none its speed then.
+
+    gain: acceleration of road (m/s^2) and crank (rad/s^2) in that time, by name.
+    """
+    speed = {ROAD: ride.launch, "crank": ride.launch / ride.travel}
+    earlier = {name: speed[name] - before / 2 * (gain or {}).get(name, 0.0) for name in speed}
+    state = {ROAD: (0.0, earlier[ROAD]), "crank": (ride.start, earlier["crank"])}
+    for leg in TWO_LEGS:
+        turn = ride.start - leg.lag - np.array([0.0, earlier["crank"] * before])
+        for joint, (angle, rate, _) in joint_motion(kinematics.solve(ride.design, turn)).items():
+            now, then = np.unwrap(angle)
+            state[leg.prefix + joint] = float(now), float((now - then) / before if before else speed["crank"] * rate[0])
+    return state
+
+
+@dataclass(frozen=True, eq=False)
+class RoadRun:
+    """A ride simulated by MuJoCo; every sensor of the model at every step, shape (steps, ...)."""
+
+    ride: Ride
+    timestep: float  # s
+    model: mujoco.MjModel
+    run: Run
+
+    @cached_property
+    def sensors(self) -> Sensors:
+        return Sensors(self.model, self.run.sensors)
+
+    @cached_property
+    def trace(self) -> Trace:
+        """The ride as the reduced model describes it."""
+        rows, load = self.sensors, self.ride.load
+        distance, speed = rows[f"{ROAD}_angle"][:-1], rows.following_speed(ROAD)
+        power = np.zeros(len(speed))
+        for joint in joint_drives(TWO_LEGS):
+            power += rows[f"{joint}_moment"][:-1] * rows.following_speed(joint)
+        resistance = load.rolling * np.sign(speed) + load.climb + load.drag * speed * np.abs(speed)
+        free = np.zeros(len(speed), bool) if self.ride.fixed else rows[DRIVETRAIN][:-1] == 0
+        return Trace(
+            ride=self.ride,
+            time=self.timestep * np.arange(len(speed)),
+            crank_angle=rows["crank_angle"][:-1],
+            crank_speed=rows.following_speed("crank"),
+            distance=distance,
+            speed=speed,
+            coasting=free,
+            muscle_work=self._work(power),
+            road_work=self._work(resistance * speed),
+        )
+
+    def _work(self, power: FloatArray) -> FloatArray:
+        """Energy since the start, J."""
+        return np.asarray(cumulative_trapezoid(power, dx=self.timestep, initial=0))
+
+    @property
+    def lost(self) -> float:
+        """Muscle work that neither the road took nor motion and height hold at the end, J: the scheme's error."""
+        trace, (before, after) = self.trace, (self.run.start_energy, self.run.end_energy)
+        climbed = self.ride.load.climb * float(trace.distance[-1])  # height of the whole, which the road took
+        return float(trace.muscle_work[-1] - trace.road_work[-1]) + climbed - (sum(after) - sum(before))
+
+    @cached_property
+    def loop_gap_max(self) -> float:
+        """Largest distance between the two sides of a cut joint, m."""
+        gaps = [name for name in self.sensors.names if name.endswith("_gap")]
+        return max(float(np.linalg.norm(self.sensors.vector(gap), axis=1).max()) for gap in gaps)
+
+
+def ride_on_road(ride: Ride, timestep: float = TIMESTEP, make_loop: Callable[[Ride], Loop] | None = None) -> RoadRun:
+    """Ride in MuJoCo. make_loop: another than road_loop, which steps in Python.
+
+    Raises InputError as reduced.ride, UnstableError if the integration breaks down.
+    """
+    require_motion(ride.design, ride.moments.measured_on)
+    model = build_road_mjcf(ride, timestep, drawn=False).compile()
+    loop = (make_loop or road_loop)(ride)
+    _start_half_a_step_early(model, ride)
+    if ride.launch:
+        probe = Sensors(model, run_loop(model, loop, PRE_ROLL, pre_roll=0).sensors)
+        gain = {name: float(np.diff(probe[f"{name}_speed"][PRE_ROLL // 2 : -1]).mean()) for name in (ROAD, "crank")}
+        _start_half_a_step_early(model, ride, {name: change / timestep for name, change in gain.items()})
+    return RoadRun(ride, timestep, model, run_loop(model, loop, round(ride.duration / timestep) + 1, pre_roll=0))
+
+
+def _start_half_a_step_early(model: mujoco.MjModel, ride: Ride, gain: dict[str, float] | None = None) -> None:
+    """Give the keyframe the speeds that MuJoCo has there: they lag its positions by half a step. gain: _start_state."""
+    for joint, (_, speed) in _start_state(ride, model.opt.timestep, gain).items():
+        model.key_qvel[0, model.joint(joint).dofadr[0]] = speed
+
+
+def road_loop(ride: Ride) -> Loop:
+    """Joint moments commanded by crank angle, and the freewheel's limit kept at the length reached."""
+    return controlled_loop(_control(ride))
+
+
+def _control(ride: Ride) -> Control:
+    told, relation = drive(ride.design, ride.moments, ride.lag), ride.moments.torque_velocity
+    tables = [[*told.command[joint].tolist(), float(told.command[joint][0])] for joint in JOINTS]
+    cells, measured, lag, travel = POINTS / (2 * math.pi), ride.moments.measured_on.cadence, ride.lag, ride.travel
+
+    def control(model: mujoco.MjModel, data: mujoco.MjData, speeds: Any) -> Callable[[], None]:
+        position, ctrl = memoryview(data.qpos), cast("Any", memoryview(data.ctrl))
+        limit = cast("Any", memoryview(model.tendon_range.reshape(-1)))
+        road, crank, turning = (int(model.joint(ROAD).qposadr[0]), *drive_addresses_of(model, "crank"))
+        muscles = []
+        for leg in TWO_LEGS:
+            for joint, table in zip(JOINTS, tables, strict=True):
+                actuator, _, speed = drive_addresses(model, leg.prefix + joint)
+                fastest = relation.max_speed[joint] if relation else math.inf
+                muscles.append((actuator, speed, cells * leg.lag, table, fastest))
+        answers: list[float] = []
+        commands: list[float] = []
+        kept = math.exp(-model.opt.timestep / lag) if lag else 0.0
+
+        def act() -> None:
+            nonlocal answers, commands
+            angle = position[crank]
+            if not ride.fixed:
+                limit[0] = max(limit[0], position[road] / travel - angle)
+            ahead = math.atan(speeds[turning] * lag) - math.atan(measured * lag) if lag else 0.0
+            place, told = cells * (angle + ahead), []
+            for _, _, behind, table, _ in muscles:
+                here = (place - behind) % POINTS
+                row = int(here)
+                told.append(table[row] + (here - row) * (table[row + 1] - table[row]))
+            if lag and answers:  # the exact answer to a command that changes evenly over a step is this but for h^2
+                means = [(old + new) / 2 for old, new in zip(commands, told, strict=True)]
+                answers = [mean + kept * (answer - mean) for mean, answer in zip(means, answers, strict=True)]
+            else:
+                answers = told
+            commands = told
+            for (actuator, speed, _, _, fastest), moment in zip(muscles, answers, strict=True):
+                if relation:
+                    relative = math.copysign(speeds[speed], moment * speeds[speed]) / fastest
+                    moment *= hill_factor(
+                        relation.curvature,
+                        relation.eccentric_plateau,
+                        min(max(relative, 0.0), 1.0),
+                        max(-relative, 0.0),
+                    )
+                ctrl[actuator] = moment
+
+        return act
+
+    return control
+
+
+def drive_addresses_of(model: mujoco.MjModel, joint: str) -> tuple[int, int]:
+    """Index of a joint in qpos and in qvel."""
+    return int(model.joint(joint).qposadr[0]), int(model.joint(joint).dofadr[0])

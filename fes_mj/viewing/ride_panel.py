@@ -1,0 +1,73 @@
+"""The right half of a ride's video: speed and muscle power over time by both solvers, with a cursor that moves."""
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from PIL import Image, ImageDraw
+
+from fes_mj.arrays import Picture
+from fes_mj.ride_case import RideCase
+from fes_mj.style import BAD, COLOURS, FAINT, GOOD, INK, STYLE, literal
+from fes_mj.units import KMH
+from fes_mj.viewing.charts import any_letters
+
+_DPI = 100
+_SMOOTH = 0.02  # s over which power is drawn
+
+
+class RidePanel:
+    """Draws the curves once; each frame is a copy with the cursor at another step."""
+
+    def __init__(self, case: RideCase, end: float, width: int, height: int) -> None:
+        """end: s, until which the ride is shown."""
+        self._time, self._height = case.simulation.trace.time, height
+        with mpl.rc_context(STYLE), any_letters():
+            figure = Figure(figsize=(width / _DPI, height / _DPI), dpi=_DPI, facecolor="white")
+            canvas = FigureCanvasAgg(figure)
+            self._axes = [figure.add_axes((0.14, bottom, 0.81, 0.30)) for bottom in (0.53, 0.14)]
+            _plot(case, end, *self._axes)
+            _write_facts(figure, case)
+            canvas.draw()  # type: ignore[no-untyped-call]
+        self._background = np.asarray(canvas.buffer_rgba())[..., :3].copy()  # type: ignore[no-untyped-call]
+
+    def frame(self, step: int) -> Picture:
+        """The panel with the cursor at a step of the ride, shape (height, width, 3)."""
+        picture = Image.fromarray(self._background)
+        draw = ImageDraw.Draw(picture)
+        for axes in self._axes:
+            ends = [axes.transData.transform((self._time[step], y)) for y in axes.get_ylim()]
+            draw.line([(float(x), self._height - float(y)) for x, y in ends], fill=INK, width=2)
+        return np.asarray(picture)
+
+
+def _plot(case: RideCase, end: float, speed: Axes, power: Axes) -> None:
+    looks = (
+        ("reduced model", case.reference, COLOURS["reference"], 4, 0.45),
+        ("MuJoCo", case.simulation.trace, COLOURS["mujoco"], 1.5, 1.0),
+    )
+    grid = np.arange(0, end, _SMOOTH)
+    for label, trace, colour, width, alpha in looks:
+        work = np.interp(grid, trace.time, trace.muscle_work)
+        speed.plot(
+            grid, np.interp(grid, trace.time, trace.speed) / KMH, color=colour, lw=width, alpha=alpha, label=label
+        )
+        power.plot(grid[:-1] + _SMOOTH / 2, np.diff(work) / _SMOOTH, color=colour, lw=width, alpha=alpha)
+    speed.set(xlim=(0, end), ylabel="tricycle, km/h")
+    power.set(xlim=(0, end), ylabel="muscles, W", xlabel="time, s")
+    power.axhline(0, color="black", lw=0.8)
+    speed.legend(loc="lower left", bbox_to_anchor=(-0.02, 1.0), fontsize=11, ncols=2)
+
+
+def _write_facts(figure: Figure, case: RideCase) -> None:
+    """Title above and the verdict below the curves."""
+    ride, trace = case.ride, case.simulation.trace
+    title = f"{ride.design.name.upper()}: {ride.design.linkage.architecture.title}"
+    figure.text(0.05, 0.955, literal(title), size=13, weight="bold")
+    road = f"joint moments {ride.moments.name.upper()}, {ride.transmission}, {100 * ride.road.slope:.3g} % slope"
+    figure.text(0.05, 0.925, literal(road), size=11, color=FAINT)
+    speed = trace.mean_speed
+    end = f"rides, {(speed or 0) / KMH:.1f} km/h at the end" if trace.rides else f"stops after {trace.stopped_at:.1f} s"
+    verdict = "the two solvers agree" if case.agrees else "the two solvers DO NOT agree"
+    figure.text(0.14, 0.025, f"{end}; {verdict}", size=12, weight="bold", color=GOOD if case.agrees else BAD)

@@ -1,0 +1,82 @@
+"""`fes_mj ride`: the promised JSON, tables, files and exit codes."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.cli.conftest import answer, result
+
+KEYS = {
+    "design", "group", "transmission", "slope_percent", "duration_s", "rides", "speed_kmh", "cadence_rpm",
+    "speed_ripple", "distance_m", "freewheel_share", "stopped_at_s", "power_muscle_W", "power_road_W", "agrees",
+    "checks",
+}  # fmt: skip
+
+
+def test_json_of_a_ride(capsys: pytest.CaptureFixture[str]) -> None:
+    code, content = answer(capsys, "ride", "r1", "--group", "p1p3", "--duration", "3", "--transmission", "fixed")
+    assert code == 0
+    assert set(content) >= KEYS
+    assert (content["rides"], content["stopped_at_s"], content["agrees"]) == (True, None, True)
+    assert (content["group"], content["torque_velocity"], content["freewheel_share"]) == ("p1p3", "hill", 0)
+    # wheel of 0.66 m, crank turns per wheel turn: the transmission ties the two means together
+    wheel = content["cadence_rpm"] / 60 / 2.03 * np.pi * 0.66
+    assert content["speed_kmh"] / 3.6 == pytest.approx(wheel, rel=1e-3)
+
+
+def test_a_tricycle_that_stops_is_a_result(capsys: pytest.CaptureFixture[str]) -> None:
+    code, out, _ = result(capsys, "ride", "trt", "--slope", "20", "--duration", "4")
+    assert code == 0
+    assert "It stops after" in out
+    assert "The two solvers agree" in out
+
+
+def test_out_writes_result_ride_and_model(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    assert result(capsys, "ride", "trt", "--duration", "2", "-q", "--out", str(tmp_path)) == (0, "", "")
+    assert {path.name for path in tmp_path.iterdir()} == {
+        f"trt-p1p2-ride.{suffix}" for suffix in ("json", "csv", "xml")
+    }
+    content = json.loads((tmp_path / "trt-p1p2-ride.json").read_text())
+    table = np.genfromtxt(tmp_path / "trt-p1p2-ride.csv", delimiter=",", names=True)
+    assert table["distance_m"].max() == pytest.approx(content["distance_m"], rel=1e-6)
+    assert table["time_s"][-1] == pytest.approx(2.0)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--slope", "60"], "--slope is 60; it must be a slope in percent"),
+        (["--launch", "0"], "--launch is 0; for a start from rest give its crank angle: --from-rest DEG"),
+        (["--launch", "-3"], "--launch is -3; it must be a speed in km/h from 0.1 to 60"),
+        (["--launch", "5", "--from-rest", "10"], "--launch and --from-rest exclude each other"),
+        (["--tricycle-mass", "-20"], "--tricycle-mass is -20; it must be a mass in kg"),
+        (["--rolling-mass", "-1"], "--rolling-mass is -1"),
+        (["--lag", "0.7"], "--lag is 0.7; it must be shorter than a turn of the crank, which takes 0.623 s in d1"),
+        (["--lag", "nan"], "--lag is nan"),
+        (["--duration", "0"], "--duration is 0; it must be a time in s from 1 to 300"),
+        (["--crr", "2"], "--crr is 2"),
+        (["--drag-area", "inf"], "--drag-area is inf"),
+        (["--torque-velocity", "katz"], "Invalid value"),
+        (["--out", "nowhere"], "nowhere: cannot write the results: the folder does not exist"),
+    ],
+)
+def test_bad_input(arguments: list[str], words: str, capsys: pytest.CaptureFixture[str]) -> None:
+    code, out, err = result(capsys, "ride", "d1", *arguments)
+    assert (code, out) == (2, "")
+    assert words in err
+    assert err.count("\n") == 1
+
+
+def test_starts(capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("numba")
+    pytest.importorskip("matplotlib")
+    monkeypatch.setattr("fes_mj.starts.ANGLES", 8)
+    code, content = answer(capsys, "ride", "r1", "--starts", "--duration", "5", "--out", str(tmp_path))
+    assert code == 0
+    assert 0 < content["start_share"] < 1
+    assert 0 < content["launch_speed_kmh"] < 5.71
+    assert 0 < content["slope_limit_percent"] < 30
+    assert len(content["start_angles_deg"]) == round(16 * content["start_share"])
+    assert "fes_mj" in (tmp_path / "r1-p1p2-ride.svg").read_text()[:40]
