@@ -27,7 +27,7 @@ from fes_mj.joints import JOINTS
 from fes_mj.moments import JointMoments
 from fes_mj.ride import Ride, Trace
 from fes_mj.segments import GRAVITY, inertias
-from fes_mj.torque_velocity import TorqueVelocity, hill_factor
+from fes_mj.torque_velocity import AT_ANY_SPEED, hill_factor
 
 # A step: so much of the crank, running free or engaged with the tricycle's inertia behind it, or of the time where it
 # is slow. A quarter of it changes the speed of the paper's designs after a minute by less than 1e-4 of itself.
@@ -141,7 +141,7 @@ def _as_floats(table: FloatArray) -> list[tuple[float, ...]]:
 def _constants(ride: Ride) -> tuple[float, ...]:
     """What the solver must know of a ride beside the table."""
     load, relation = ride.load, ride.moments.torque_velocity
-    hill = relation or TorqueVelocity("none", 1.0, 2.0, dict.fromkeys(JOINTS, math.inf))
+    hill = relation or AT_ANY_SPEED
     return (
         float(ride.fixed),
         ride.travel,

@@ -13,27 +13,31 @@ from fes_mj.arrays import FloatArray
 from fes_mj.checks import LEAST_POWER, Check, check
 from fes_mj.files import csv_text
 from fes_mj.ride import Ride, Trace
-from fes_mj.simulation.road import TIMESTEP, RoadRun, ride_on_road
+from fes_mj.simulation.road import TIMESTEP, RoadRun, compiled_road_loop, ride_on_road, road_loop
 
 DISTANCES = 2000  # at which the two speeds are compared
 
 
 @dataclass(frozen=True, eq=False)
 class RideCase:
-    """A ride, computed when it is first asked for, by either solver. timestep: of MuJoCo, s."""
+    """A ride, computed when it is first asked for, by either solver.
+
+    timestep: of MuJoCo, s. compiled: both in machine code, which takes seconds to make; needs numba.
+    """
 
     ride: Ride
     timestep: float = TIMESTEP
+    compiled: bool = False
 
     @cached_property
     def simulation(self) -> RoadRun:
         """By MuJoCo. Raises UnstableError if it breaks down."""
-        return ride_on_road(self.ride, self.timestep)
+        return ride_on_road(self.ride, self.timestep, compiled_road_loop if self.compiled else road_loop)
 
     @cached_property
     def reference(self) -> Trace:
         """By the reduced equation of motion."""
-        return reduced.ride(self.ride)
+        return reduced.ride(self.ride, self.compiled)
 
     def check(self, name: str, value: float) -> Check:
         """A measured value of this ride beside its limit."""

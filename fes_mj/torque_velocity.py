@@ -49,6 +49,10 @@ def hill_factor(curvature: float, eccentric_plateau: float, shortening: Any, len
     return concentric + excess * (1 - 1 / (1 + steepness * lengthening))
 
 
+# No dependence on speed, as a relation: muscles that are infinitely fast.
+AT_ANY_SPEED = TorqueVelocity("none", 1.0, 2.0, {"knee": np.inf, "hip": np.inf})
+
+
 @cache
 def load_torque_velocity(name: str) -> TorqueVelocity:
     """A relation ("hill") with its parameters of data/torque_velocity.toml."""

@@ -51,7 +51,7 @@ class Outcome(NamedTuple):
 
 def outcome(ride: Ride) -> Outcome:
     """Ride once, both ways."""
-    case = RideCase(ride)
+    case = RideCase(ride, compiled=True)
     return Outcome(ride, case.summary(), case.checks)
 
 

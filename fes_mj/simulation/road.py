@@ -3,8 +3,8 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
-from typing import Any, cast
+from functools import cached_property, partial
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -20,10 +20,11 @@ from fes_mj.ride import Ride, Trace
 from fes_mj.segments import GRAVITY
 from fes_mj.simulation.appearance import Spec
 from fes_mj.simulation.bench import joint_drives
+from fes_mj.simulation.compiled import compiled_controlled_loop
 from fes_mj.simulation.mjcf import LOOP_SOLIMP, LOOP_SOLREF, add_motors, build_mjcf, joint_motion
 from fes_mj.simulation.sensors import Sensors
-from fes_mj.simulation.stepping import PRE_ROLL, Control, Loop, Run, controlled_loop, drive_addresses, run_loop
-from fes_mj.torque_velocity import hill_factor
+from fes_mj.simulation.stepping import PRE_ROLL, Loop, Run, controlled_loop, drive_addresses, run_loop
+from fes_mj.torque_velocity import AT_ANY_SPEED, hill_factor
 
 ROAD, DRIVETRAIN = "road", "drivetrain"  # the joint along the road, m; the tendon road / travel - crank, rad
 # A quarter of a millisecond: 360 steps a turn at 660 rpm, and at 60 rpm as fine as on the bench.
@@ -191,62 +192,80 @@ def _start_half_a_step_early(model: mujoco.MjModel, ride: Ride, gain: dict[str, 
 
 
 def road_loop(ride: Ride) -> Loop:
-    """Joint moments commanded by crank angle, and the freewheel's limit kept at the length reached."""
-    return controlled_loop(_control(ride))
+    """Joint moments commanded by crank angle, and the freewheel's limit kept at the length reached; steps in Python."""
+    control = make_control(lambda function: function)
+
+    def bound(model: mujoco.MjModel, data: mujoco.MjData, speeds: Any) -> Callable[[], None]:
+        arrays = [each.tolist() if isinstance(each, np.ndarray) else each for each in control_arguments(ride, model)]
+        arguments = (memoryview(model.tendon_range.reshape(-1)), *arrays[1:])
+        position, ctrl = memoryview(data.qpos), memoryview(data.ctrl)
+        return partial(control, arguments, position, speeds, ctrl)
+
+    return controlled_loop(bound)
 
 
-def _control(ride: Ride) -> Control:
-    told, relation = drive(ride.design, ride.moments, ride.lag), ride.moments.torque_velocity
-    tables = [[*told.command[joint].tolist(), float(told.command[joint][0])] for joint in JOINTS]
-    cells, measured, lag, travel = POINTS / (2 * math.pi), ride.moments.measured_on.cadence, ride.lag, ride.travel
-
-    def control(model: mujoco.MjModel, data: mujoco.MjData, speeds: Any) -> Callable[[], None]:
-        position, ctrl = memoryview(data.qpos), cast("Any", memoryview(data.ctrl))
-        limit = cast("Any", memoryview(model.tendon_range.reshape(-1)))
-        road, crank, turning = (int(model.joint(ROAD).qposadr[0]), *drive_addresses_of(model, "crank"))
-        muscles = []
-        for leg in TWO_LEGS:
-            for joint, table in zip(JOINTS, tables, strict=True):
-                actuator, _, speed = drive_addresses(model, leg.prefix + joint)
-                fastest = relation.max_speed[joint] if relation else math.inf
-                muscles.append((actuator, speed, cells * leg.lag, table, fastest))
-        answers: list[float] = []
-        commands: list[float] = []
-        kept = math.exp(-model.opt.timestep / lag) if lag else 0.0
-
-        def act() -> None:
-            nonlocal answers, commands
-            angle = position[crank]
-            if not ride.fixed:
-                limit[0] = max(limit[0], position[road] / travel - angle)
-            ahead = math.atan(speeds[turning] * lag) - math.atan(measured * lag) if lag else 0.0
-            place, told = cells * (angle + ahead), []
-            for _, _, behind, table, _ in muscles:
-                here = (place - behind) % POINTS
-                row = int(here)
-                told.append(table[row] + (here - row) * (table[row + 1] - table[row]))
-            if lag and answers:  # the exact answer to a command that changes evenly over a step is this but for h^2
-                means = [(old + new) / 2 for old, new in zip(commands, told, strict=True)]
-                answers = [mean + kept * (answer - mean) for mean, answer in zip(means, answers, strict=True)]
-            else:
-                answers = told
-            commands = told
-            for (actuator, speed, _, _, fastest), moment in zip(muscles, answers, strict=True):
-                if relation:
-                    relative = math.copysign(speeds[speed], moment * speeds[speed]) / fastest
-                    moment *= hill_factor(
-                        relation.curvature,
-                        relation.eccentric_plateau,
-                        min(max(relative, 0.0), 1.0),
-                        max(-relative, 0.0),
-                    )
-                ctrl[actuator] = moment
-
-        return act
-
-    return control
+def compiled_road_loop(ride: Ride) -> Loop:
+    """The same in machine code. Raises MissingPartError without numba."""
+    return compiled_controlled_loop(make_control, partial(control_arguments, ride), forces=False)
 
 
-def drive_addresses_of(model: mujoco.MjModel, joint: str) -> tuple[int, int]:
-    """Index of a joint in qpos and in qvel."""
-    return int(model.joint(joint).qposadr[0]), int(model.joint(joint).dofadr[0])
+def control_arguments(ride: Ride, model: mujoco.MjModel) -> tuple[Any, ...]:
+    """What the control of make_control needs beside the state: arrays, and memory from step to step."""
+    told, relation = drive(ride.design, ride.moments, ride.lag), ride.moments.torque_velocity or AT_ANY_SPEED
+    muscles = [(leg, joint) for leg in TWO_LEGS for joint in JOINTS]
+    addresses = [drive_addresses(model, leg.prefix + joint) for leg, joint in muscles]
+    crank = model.joint("crank")
+    lag, step = ride.lag, model.opt.timestep
+    return (
+        model.tendon_range.reshape(-1),
+        np.array([model.joint(ROAD).qposadr[0], crank.qposadr[0], crank.dofadr[0]]),
+        np.array([actuator for actuator, _, _ in addresses]),
+        np.array([speed for _, _, speed in addresses]),
+        np.array([POINTS / (2 * math.pi) * leg.lag for leg, _ in muscles]),
+        np.array([relation.max_speed[joint] for _, joint in muscles]),
+        np.array([np.append(told.command[joint], told.command[joint][0]) for _, joint in muscles]),
+        np.array(
+            [
+                float(ride.fixed),
+                ride.travel,
+                lag,
+                ride.moments.measured_on.cadence,
+                math.exp(-step / lag) if lag else 0.0,
+                relation.curvature,
+                relation.eccentric_plateau,
+            ]
+        ),
+        np.full(2 * len(muscles), np.nan),  # answers and commands of the step before
+    )
+
+
+def make_control(compiled: Callable[[Any], Any]) -> Callable[..., None]:
+    """Sets the moments and the freewheel. compiled: what makes machine code of Python functions, if anything."""
+    hill, cells = compiled(hill_factor), POINTS / (2 * math.pi)
+
+    @compiled
+    def control(arguments: Any, qpos: Any, speeds: Any, ctrl: Any) -> None:
+        limit, places, actuators, joints, behind, fastest, tables, constants, memory = arguments
+        fixed, travel, lag, measured, kept, curvature, plateau = constants
+        angle, count = qpos[places[1]], len(actuators)
+        if not fixed:
+            limit[0] = max(limit[0], qpos[places[0]] / travel - angle)
+        if lag > 0:
+            angle += math.atan(speeds[places[2]] * lag) - math.atan(measured * lag)
+        for muscle in range(count):
+            place = (cells * angle - behind[muscle]) % POINTS
+            row = int(place)
+            table = tables[muscle]
+            told = table[row] + (place - row) * (table[row + 1] - table[row])
+            moment = told
+            if lag > 0:
+                if memory[muscle] == memory[muscle]:  # exact for a command that stays at its mean over the step
+                    mean = (memory[count + muscle] + told) / 2
+                    moment = mean + kept * (memory[muscle] - mean)
+                memory[muscle], memory[count + muscle] = moment, told
+            relative = (speeds[joints[muscle]] if moment > 0 else -speeds[joints[muscle]]) / fastest[muscle]
+            shortening, lengthening = min(max(relative, 0.0), 1.0), max(-relative, 0.0)
+            ctrl[actuators[muscle]] = moment * hill(curvature, plateau, shortening, lengthening)
+
+    result: Callable[..., None] = control
+    return result

@@ -1,0 +1,63 @@
+"""The ride's model in MuJoCo: what it weighs, how it starts, and its loop in machine code."""
+
+from dataclasses import replace
+
+import mujoco
+import numpy as np
+import pytest
+
+import fes_mj
+from fes_mj.reduced import INERTIA, RECOIL, leg_table
+from fes_mj.ride import Ride, Road
+from fes_mj.simulation.road import build_road_mjcf, compiled_road_loop, ride_on_road
+from fes_mj.torque_velocity import load_torque_velocity
+
+HILL = replace(fes_mj.load_moments("p1p2"), torque_velocity=load_torque_velocity("hill"))
+
+
+@pytest.mark.parametrize("transmission", ["fixed", "freewheel"])
+def test_the_keyframe_is_assembled_at_any_start(design: fes_mj.Design, transmission: str) -> None:
+    ride = Ride(design, HILL, transmission=transmission, start=2.0)
+    model = build_road_mjcf(ride).compile()
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    mujoco.mj_forward(model, data)
+    gaps = [data.sensor(model.sensor(i).name).data for i in range(model.nsensor) if "_gap" in model.sensor(i).name]
+    assert max(np.abs(gap).max() for gap in gaps) < 1e-12
+    # three rows a loop; the one across the plane and the speeds along it must all vanish as well
+    assert np.abs(data.efc_vel[: 3 * len(gaps)]).max() < 1e-9
+
+
+def test_mass_and_recoil_are_those_of_the_equation_of_motion(design: fes_mj.Design) -> None:
+    """Kinetic energy at the keyframe, with the frame moving and without."""
+    ride = Ride(design, HILL, start=0.7)
+    model = build_road_mjcf(ride).compile()
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    row = [np.interp(0.7, np.linspace(0, 2 * np.pi, 3601), leg_table(design, HILL)[:, i]) for i in (INERTIA, RECOIL)]
+    crank = ride.launch / ride.travel
+    for speed in (0.0, ride.launch):
+        data.qvel[model.joint("road").dofadr[0]] = speed
+        mujoco.mj_forward(model, data)
+        mujoco.mj_energyVel(model, data)
+        expected = row[0] * crank**2 / 2 - row[1] * crank * speed + ride.load.inertia * speed**2 / 2
+        assert data.energy[1] == pytest.approx(expected, rel=1e-5)
+
+
+def test_at_rest_nothing_creeps() -> None:
+    """A tricycle held by dry friction on a slope, in MuJoCo's soft constraints."""
+    nothing = fes_mj.JointMoments("none", np.array([0.0, 3.0]), np.zeros(2), np.zeros(2))
+    ride = Ride(
+        fes_mj.load_design("trt"), nothing, Road(slope=0.004, rolling_resistance=0.05), launch=0.0, duration=5.0
+    )
+    trace = ride_on_road(ride).trace
+    assert not trace.rides
+    assert abs(trace.distance).max() < 1e-6
+
+
+@pytest.mark.parametrize("lag", [0.0, 0.1])
+def test_machine_code_rides_the_same_way_bit_for_bit(lag: float) -> None:
+    pytest.importorskip("numba")
+    ride = Ride(fes_mj.load_design("r2"), HILL, duration=1.0, lag=lag)
+    slow, fast = ride_on_road(ride), ride_on_road(ride, make_loop=compiled_road_loop)
+    assert np.array_equal(slow.run.sensors, fast.run.sensors)
