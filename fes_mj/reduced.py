@@ -17,6 +17,7 @@ from functools import cache, lru_cache
 from typing import Any
 
 import numpy as np
+from scipy.optimize import brentq
 
 from fes_mj.arrays import BoolArray, FloatArray
 from fes_mj.design import TWO_LEGS, Design
@@ -131,6 +132,32 @@ def gained_power(trace: Trace) -> float | None:
     kinetic = (row[INERTIA] * crank**2 + ride.load.inertia * speed**2) / 2 - row[RECOIL] * crank * speed
     began, ended = trace.ends(trace.time)
     return float(kinetic[1] - kinetic[0]) / (ended - began) if trace.whole_turns else None
+
+
+def steady_ripple(ride: Ride) -> float:
+    """Largest less smallest crank speed per its mean, once a fixed gear rides evenly at the ride's launch speed.
+
+    Against a constant force that takes the mean power, and with moments as they are at rest, the energy at a crank
+    angle is an integral up to it: I_t(a) w^2 / 2 = E + integral of Q - V' less their mean, I_t = I - 2 c X + m c^2.
+    """
+    table, load, travel = leg_table(ride.design, ride.moments, ride.lag)[:-1], ride.load, ride.travel
+    muscles = np.arange(MUSCLES)
+    push = (table[:, RATES + muscles] * table[:, COMMANDS + muscles]).sum(axis=1)
+    push -= GRAVITY * (math.cos(ride.road.angle) * table[:, HEIGHT_RATE] - math.sin(ride.road.angle) * table[:, RECOIL])
+    surplus = np.cumsum(push - push.mean()) * 2 * np.pi / POINTS
+    inertia = table[:, INERTIA] - 2 * travel * table[:, RECOIL] + travel**2 * load.inertia
+    cadence = ride.launch / travel
+
+    def speeds(energy: float) -> FloatArray:
+        return np.asarray(np.sqrt(2 * (energy + surplus) / inertia))
+
+    def too_fast(energy: float) -> float:
+        return 1 / float(np.mean(1 / speeds(energy))) - cadence  # the mean over time
+
+    low = -float(surplus.min()) * (1 + 1e-9) + 1e-12
+    high = low + float(inertia.max()) * cadence**2 + float(np.ptp(surplus))
+    found = speeds(brentq(too_fast, low, high))
+    return float(np.ptp(found)) / cadence
 
 
 def _as_floats(table: FloatArray) -> list[tuple[float, ...]]:

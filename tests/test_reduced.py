@@ -13,7 +13,7 @@ from fes_mj.drive import POINTS, drive
 from fes_mj.inverse_dynamics import crank_moment
 from fes_mj.reduced import HEIGHT_RATE, INERTIA, INERTIA_RATE, RECOIL, RECOIL_RATE, leg_table
 from fes_mj.reference_tricycle import PAPER_TRICYCLE
-from fes_mj.ride import Ride, Road
+from fes_mj.ride import Ride, Road, balancing_slope
 from fes_mj.segments import GRAVITY
 from fes_mj.torque_map import torque_map
 from fes_mj.torque_velocity import load_torque_velocity
@@ -129,3 +129,25 @@ def test_machine_code_rides_the_same_way() -> None:
     slow, fast = (reduced.ride(ride, compiled=compiled) for compiled in (False, True))
     assert fast.distance[-1] == pytest.approx(slow.distance[-1], rel=1e-9)
     assert fast.crank_angle[-1] == pytest.approx(slow.crank_angle[-1], rel=1e-9)
+
+
+def test_the_steady_ripple_is_that_of_a_long_ride(smooth_moments: fes_mj.JointMoments) -> None:
+    """Closed form against integration, on a slope where the launch speed is nearly the steady one."""
+    ride = Ride(fes_mj.load_design("d1"), smooth_moments, Road(drag_area=0.0), "fixed", duration=20.0)
+    steady = replace(ride, road=replace(ride.road, slope=balancing_slope(ride)))
+    trace = reduced.ride(steady)
+    assert trace.cadence is not None
+    at_its_speed = replace(steady, launch=trace.cadence * steady.travel)
+    assert trace.ripple == pytest.approx(reduced.steady_ripple(at_its_speed), rel=0.01)
+
+
+def test_the_recoil_of_the_frame_more_than_doubles_the_ripple() -> None:
+    """D1 at 90 kg, of which all ride on the road; on a frame that is held still, as its swing of energy shows."""
+    design, moments = fes_mj.load_design("d1"), fes_mj.load_moments("p1p2")
+    ride = Ride(design, moments, Road(tricycle_mass=15.0, rolling_mass=0.0), "fixed")
+    table = leg_table(design, moments).copy()
+    table[:, RECOIL] = 0.0
+    recoiling = reduced.steady_ripple(ride)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(reduced, "leg_table", lambda *_: table)
+        assert recoiling > 2 * reduced.steady_ripple(ride)

@@ -13,7 +13,9 @@ from fes_mj.text import printable
 
 _DEFAULTS = LoadOptions()
 _SCENE = "scene.xml"
-_Variant = Literal["sites", "bodies", "passive", "two-legs", "compatible"]  # the keys of simulation.export.VARIANTS
+_Variant = Literal[
+    "sites", "bodies", "passive", "two-legs", "compatible", "ride"
+]  # the keys of simulation.export.VARIANTS
 
 
 def export(
@@ -36,17 +38,17 @@ def export(
     variant
         sites: loops anchored at sites (default); bodies: on bodies, for Drake; passive: no servo and no joint
         motors; two-legs: half a turn apart on one crank; compatible: Euler integrator and a flywheel, for readers
-        without `discrete`. Give --variant again to combine them.
+        without `discrete`; ride: both legs on a tricycle that rides on a flat road with a freewheel. Give --variant
+        again to combine them.
     scene
         Also write scene.xml beside the model: floor, light and camera.
     """
-    from fes_mj.simulation.export import MARKS, mjcf_text, scene_text, sidecar_text, variant_options
+    from fes_mj.simulation.export import MARKS, mjcf_text, scene_text, sidecar_text, variant_model, variant_options
 
     changes = variant_options(variant or ())
     legs = changes.get("legs", 1)
     loaded, inputs = options.load(design, legs), options.inputs(design)
     require_writable(out, "the model", ".xml", inputs)
-    from fes_mj.simulation.mjcf import build_mjcf
 
     table = out.with_suffix(".csv")
     require_replaceable(table, "the table", MARKS["table"], inputs)
@@ -55,7 +57,7 @@ def export(
             raise InputError(f"{out}: --scene writes {_SCENE}, which names the model; give the model another name")
         require_replaceable(out.with_name(_SCENE), "the scene", MARKS["scene"], inputs)
     texts = {
-        out: mjcf_text(build_mjcf(loaded.design, cadence=loaded.cadence, **changes)),
+        out: mjcf_text(variant_model(*loaded, changes)),
         table: sidecar_text(loaded.design, loaded.moments, loaded.cadence, legs),
     }
     if scene:

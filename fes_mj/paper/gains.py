@@ -6,11 +6,13 @@ from typing import Any
 import numpy as np
 
 from fes_mj.characteristics import energy_swing
-from fes_mj.design import TRICYCLE_SPEED
+from fes_mj.design import TWO_LEGS
 from fes_mj.moments import GROUPS
 from fes_mj.paper.captions import captioned
 from fes_mj.paper.printed import SIX_BARS, table1
 from fes_mj.paper.runs import Runs, joint_speed
+from fes_mj.reduced import steady_ripple
+from fes_mj.ride import Ride, Road
 from fes_mj.statics import QuasiStatic, quasi_static, ratio_sd
 from fes_mj.table import Table
 from fes_mj.torque_velocity import TorqueVelocity, load_torque_velocity
@@ -63,11 +65,10 @@ def smoothness_table(runs: Runs) -> Table:
         masses = case.reference_power() - muscle
         energy = [energy_swing(power, run.cadence) for power in (muscle, run.power)]
         work = 2 * np.pi * muscle.mean() / run.cadence
-        inertia = (run.design.rider.mass + TRICYCLE_MASS) * TRICYCLE_SPEED**2
+        ride = Ride(run.design, run.moments, Road(tricycle_mass=TRICYCLE_MASS, rolling_mass=0.0), "fixed")
+        ripple = 100 * steady_ripple(ride) if legs == len(TWO_LEGS) else None
         swings = [float(np.ptp(power)) for power in (muscle, masses, run.power)]
-        rows.append(
-            (name.upper(), group, str(legs), *swings, *(value / work for value in energy), 100 * energy[1] / inertia)
-        )
+        rows.append((name.upper(), group, str(legs), *swings, *(value / work for value in energy), ripple))
     return captioned("smoothness", rows, mass=f"{TRICYCLE_MASS:g}")
 
 

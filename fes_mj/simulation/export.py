@@ -2,7 +2,8 @@
 
 import math
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from importlib.metadata import version
 from importlib.resources import files
 from string import Template
@@ -12,22 +13,27 @@ from xml.sax.saxutils import escape
 import numpy as np
 
 from fes_mj import kinematics
-from fes_mj.design import LEGS, Design
+from fes_mj.design import LEGS, TWO_LEGS, Design
 from fes_mj.errors import InputError
 from fes_mj.files import csv_text
 from fes_mj.geometry import FROM_TOP, degrees_from_top
 from fes_mj.inverse_dynamics import crank_moment
 from fes_mj.moments import JointMoments
+from fes_mj.ride import Ride
 from fes_mj.simulation.appearance import FIELD_OF_VIEW, Spec, framing, lowest_point
+from fes_mj.simulation.mjcf import build_mjcf
+from fes_mj.simulation.road import ROAD, build_road_mjcf
 from fes_mj.torque_map import torque_map
 
-# Variant -> what it changes in build_mjcf; several may be combined.
+_ROAD = {"legs": len(TWO_LEGS), "road": True}  # nobody rides on one
+# Variant -> what it changes in build_mjcf, or that it is build_road_mjcf's model; several may be combined.
 VARIANTS: dict[str, dict[str, Any]] = {
     "sites": {"anchors": "sites"},
     "bodies": {"anchors": "bodies"},
     "passive": {"driven": False},
     "two-legs": {"legs": 2},
     "compatible": {"integrator": "euler"},
+    "ride": _ROAD,
 }
 # What of each file stands at its beginning (files.MARKED) and in nobody else's file.
 MARKS = {"model": "Written by fes_mj", "scene": ' scene">\n  <include file="', "table": ",quasi_static_crank_Nm\n"}
@@ -50,6 +56,13 @@ _COMMENTS = {
     "<torque": "Crank moment on the load: the y component, N m.",
     "<key ": "Assembled exactly at crank angle 0, moving at the cadence.",
 }
+# The same for a model on the road, beside these or instead.
+_ROAD_COMMENTS = {
+    'integrator="discrete"': "`discrete` (MuJoCo 3.13 or newer) bears the stiff loops and the stiff drivetrain.",
+    'name="road"': "Metres ridden: rims are the armature, rolling resistance the friction, air the damping.",
+    "armature=": "",
+    "<fixed": "Road less crank, rad. A freewheel has no memory: after each step raise the lower limit to the length.",
+}
 
 
 def variant_options(variants: Iterable[str]) -> dict[str, Any]:
@@ -64,12 +77,23 @@ def variant_options(variants: Iterable[str]) -> dict[str, Any]:
     return options
 
 
+def variant_model(design: Design, moments: JointMoments, cadence: float, options: Mapping[str, Any]) -> Spec:
+    """The model at a cadence (rad/s) with the options that variant_options gives."""
+    rest = {name: value for name, value in options.items() if name not in _ROAD}
+    if options.keys() >= _ROAD.keys():
+        ride = Ride(design, moments)
+        return build_road_mjcf(replace(ride, launch=cadence * ride.travel), **rest)
+    return build_mjcf(design, cadence=cadence, **options)
+
+
 def mjcf_text(spec: Spec) -> str:
     """A model of build_mjcf as commented MJCF that reloads bit for bit."""
     heading = f"{spec.comment}. {MARKS['model']} {version('fes-mj')}; m, kg, s, rad."
     spec.comment = re.sub("-(?=-)", "- ", heading)  # no comment may hold two hyphens in a row
     spec.compile()
-    lines, pending = [], dict(_COMMENTS)
+    on_road = any(joint.name == ROAD for joint in spec.joints)
+    known = _COMMENTS | (_ROAD_COMMENTS if on_road else {})
+    lines, pending = [], {mark: text for mark, text in known.items() if text}
     for line in spec.to_xml().splitlines():
         indent = line[: len(line) - len(line.lstrip())]
         lines += [f"{indent}<!-- {pending.pop(mark)} -->" for mark in _COMMENTS if mark in pending and mark in line]

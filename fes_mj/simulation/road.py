@@ -21,7 +21,7 @@ from fes_mj.segments import GRAVITY
 from fes_mj.simulation.appearance import Spec
 from fes_mj.simulation.bench import joint_drives
 from fes_mj.simulation.compiled import compiled_controlled_loop
-from fes_mj.simulation.mjcf import LOOP_SOLIMP, LOOP_SOLREF, add_motors, build_mjcf, joint_motion
+from fes_mj.simulation.mjcf import LOOP_SOLIMP, LOOP_SOLREF, NO_MINUS, add_motors, build_mjcf, joint_motion
 from fes_mj.simulation.sensors import Sensors
 from fes_mj.simulation.stepping import PRE_ROLL, Loop, Run, controlled_loop, drive_addresses, run_loop
 from fes_mj.torque_velocity import AT_ANY_SPEED, hill_factor
@@ -35,7 +35,9 @@ _FORWARD = (-1.0, 0.0, 0.0)
 _FAR = 1e6  # rad, an upper limit that is never reached: MuJoCo has no one-sided range
 
 
-def build_road_mjcf(ride: Ride, timestep: float = TIMESTEP, drawn: bool = True, **options: Any) -> Spec:
+def build_road_mjcf(
+    ride: Ride, timestep: float = TIMESTEP, drawn: bool = True, driven: bool = True, **options: Any
+) -> Spec:
     """The model of build_mjcf with both legs (same options), set on the road at the ride's start.
 
     The tricycle gets its mass and the slide joint `road`; rims are its armature, rolling resistance its friction, air
@@ -48,14 +50,16 @@ def build_road_mjcf(ride: Ride, timestep: float = TIMESTEP, drawn: bool = True, 
     spec.option.gravity = (GRAVITY * math.sin(ride.road.angle), 0.0, -GRAVITY * math.cos(ride.road.angle))
     load = ride.load
     body = spec.body("tricycle")
-    body.mass, body.inertia, body.explicitinertial = load.body_mass, [load.body_mass] * 3, True  # it never turns
+    body.mass, body.ipos, body.inertia = load.body_mass, (0.0, 0.0, 0.0), [load.body_mass] * 3  # it never turns
+    body.explicitinertial = True
     slide = body.add_joint(name=ROAD, type=mujoco.mjtJoint.mjJNT_SLIDE, axis=_FORWARD)
     slide.armature, slide.frictionloss = ride.road.rolling_mass, load.rolling
     slide.damping = (0.0, load.drag, 0.0)
     slide.solref_friction, slide.solimp_friction = LOOP_SOLREF, LOOP_SOLIMP
     _add_drivetrain(spec, ride)
-    add_motors(spec, TWO_LEGS)
-    _add_sensors(spec, ride)
+    if driven:
+        add_motors(spec, TWO_LEGS)
+    _add_sensors(spec, ride, driven)
     _replace_keyframe(spec, ride)
     return spec
 
@@ -69,15 +73,19 @@ def _add_drivetrain(spec: Spec, ride: Ride) -> None:
         gear.name1, gear.data[0] = DRIVETRAIN, -ride.start
         gear.solref, gear.solimp = LOOP_SOLREF, LOOP_SOLIMP
     else:
-        tendon.limited, tendon.range, tendon.margin = mujoco.mjtLimited.mjLIMITED_TRUE, (-ride.start, _FAR), TOUCH
+        tendon.limited, tendon.range, tendon.margin = (
+            mujoco.mjtLimited.mjLIMITED_TRUE,
+            (NO_MINUS - ride.start, _FAR),
+            TOUCH,
+        )
         tendon.solref_limit, tendon.solimp_limit = LOOP_SOLREF, LOOP_SOLIMP
 
 
-def _add_sensors(spec: Spec, ride: Ride) -> None:
+def _add_sensors(spec: Spec, ride: Ride, driven: bool) -> None:
     kinds, objects = mujoco.mjtSensor, mujoco.mjtObj
     for name, kind in ((f"{ROAD}_angle", kinds.mjSENS_JOINTPOS), (f"{ROAD}_speed", kinds.mjSENS_JOINTVEL)):
         spec.add_sensor(name=name, type=kind, objtype=objects.mjOBJ_JOINT, objname=ROAD)
-    for joint in joint_drives(TWO_LEGS):
+    for joint in joint_drives(TWO_LEGS) if driven else ():
         spec.add_sensor(
             name=f"{joint}_moment", type=kinds.mjSENS_ACTUATORFRC, objtype=objects.mjOBJ_ACTUATOR, objname=joint
         )

@@ -21,7 +21,7 @@ from fes_mj.errors import InputError
 from fes_mj.geometry import FROM_TOP
 from fes_mj.joints import JOINTS
 from fes_mj.simulation.bench import joint_drives, simulate
-from fes_mj.simulation.export import VARIANTS, mjcf_text, scene_text, sidecar_text, variant_options
+from fes_mj.simulation.export import VARIANTS, mjcf_text, scene_text, sidecar_text, variant_model, variant_options
 from fes_mj.simulation.mjcf import build_mjcf
 from fes_mj.simulation.sensors import Sensors
 from fes_mj.simulation.stepping import PRE_ROLL, drive_addresses
@@ -54,20 +54,46 @@ def test_reloads_bit_for_bit(name: str, variants: tuple[str, ...]) -> None:
         assert np.array_equal(compiled_bytes(written), compiled_bytes(reloaded))
 
 
+@pytest.mark.parametrize("others", [(), ("bodies",), ("compatible",)], ids="+".join)
+@pytest.mark.parametrize("name", DESIGNS)
+def test_the_ride_rolls_out_in_a_plain_loop(name: str, others: tuple[str, ...]) -> None:
+    """A thousand steps of mj_step on the file alone: finite, forwards, and its loops hold."""
+    design = load_design(name)
+    spec = variant_model(design, load_moments(), design.linkage.cadence, variant_options(["ride", *others]))
+    model = mujoco.MjModel.from_xml_string(mjcf_text(spec))
+    assert np.array_equal(compiled_bytes(spec.compile()), compiled_bytes(model))
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    gaps = [model.sensor(i).name for i in range(model.nsensor) if model.sensor(i).name.endswith("_gap")]
+    assert len(gaps) == 2 * (1 if design.linkage.kind == "trt" else 2)
+    largest = 0.0
+    for _ in range(1000):
+        mujoco.mj_step(model, data)
+        largest = max(largest, *(float(np.linalg.norm(data.sensor(gap).data)) for gap in gaps))
+    assert np.isfinite(data.qpos).all()
+    assert 0.1 < data.joint("road").qpos[0] < 0.5  # a quarter of a second from 1.6 m/s, against gravity's swing
+    assert largest < 1e-4
+
+
 def test_the_variants_differ_in_what_they_say() -> None:
     design = load_design("d1")
-    models = {name: build_mjcf(design, **options).compile() for name, options in VARIANTS.items()}
+    moments, cadence = load_moments(), design.linkage.cadence
+    models = {name: variant_model(design, moments, cadence, variant_options([name])).compile() for name in VARIANTS}
     assert {name: model.nu for name, model in models.items()} == {
         "sites": 3,
         "bodies": 3,
         "passive": 0,
         "two-legs": 5,
         "compatible": 2,
+        "ride": 4,
     }
     site, body = mujoco.mjtObj.mjOBJ_SITE, mujoco.mjtObj.mjOBJ_BODY
     assert {name for name, model in models.items() if (model.eq_objtype == body).all()} == {"bodies"}
     assert all((model.eq_objtype == site).all() for name, model in models.items() if name != "bodies")
-    assert {name: model.nv for name, model in models.items()} == dict.fromkeys(VARIANTS, 5) | {"two-legs": 9}
+    assert {name: model.nv for name, model in models.items()} == dict.fromkeys(VARIANTS, 5) | {
+        "two-legs": 9,
+        "ride": 10,
+    }
     assert models["compatible"].opt.integrator == mujoco.mjtIntegrator.mjINT_EULER
     assert models["compatible"].joint("crank").armature == 1e6
     assert variant_options(["two-legs", "passive"]) == {"legs": 2, "driven": False}
