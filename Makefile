@@ -34,10 +34,13 @@ benchmark: $(VENV)/.ready
 	$(BIN)/python -m tools.benchmark_start
 	$(BIN)/python -m tools.benchmark_exudyn
 	$(BIN)/python -m tools.benchmark_optimization
+	$(BIN)/python -m tools.benchmark_ride
 
-# Every check on every design, refined, with all faults injected: results/verification.md
+# Every check on every design, refined, with all faults injected: results/verification.md; every ride by both solvers:
+# results/ride_verification.md
 verification: $(VENV)/.ready
 	$(BIN)/python tools/update_verification.py
+	$(BIN)/python -m tools.verify_ride
 
 # What the package ships as data: the identified designs and the recovered moments.
 catalogue: $(VENV)/.ready

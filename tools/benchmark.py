@@ -80,10 +80,10 @@ def repeated(call: Callable[[], object], times: int) -> Callable[[], None]:
     return run
 
 
-def rates(candidates: dict[str, tuple[int, Callable[[], object]]]) -> dict[str, np.ndarray]:
+def rates(candidates: dict[str, tuple[int, Callable[[], object]]], rounds: int = ROUNDS) -> dict[str, np.ndarray]:
     """Items per second of each candidate (items, call) in each round, the candidates in turn; one warm-up round."""
     collected: dict[str, list[float]] = {name: [] for name in candidates}
-    for _ in range(ROUNDS + 1):
+    for _ in range(rounds + 1):
         for name, (items, call) in candidates.items():
             start = time.perf_counter()
             call()

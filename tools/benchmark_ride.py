@@ -1,0 +1,66 @@
+"""Speed of a ride in ratios within one run: MuJoCo's loop beside a bare mj_step loop, the reduced model beside MuJoCo.
+
+Needs the extra "optimize". Prints a table and writes results/benchmark_ride.json.
+"""
+
+from dataclasses import replace
+from pathlib import Path
+
+import mujoco
+import numpy as np
+
+from fes_mj import reduced
+from fes_mj.console import print_table
+from fes_mj.design_file import load_design
+from fes_mj.files import json_text, write_text
+from fes_mj.moments import load_moments
+from fes_mj.provenance import provenance
+from fes_mj.ride import Ride
+from fes_mj.simulation.road import TIMESTEP, build_road_mjcf, compiled_road_loop, ride_on_road
+from fes_mj.torque_velocity import load_torque_velocity
+from tools import benchmark
+
+DURATION = 60.0  # s of riding
+DESIGNS = ("trt", "d1")
+ROUNDS = 3  # of half a minute
+
+
+def rates(name: str) -> dict[str, np.ndarray]:
+    """Seconds of riding per second by the reduced model, MuJoCo with all records, a bare mj_step loop on its model."""
+    moments = replace(load_moments("p1p2"), torque_velocity=load_torque_velocity("hill"))
+    ride = Ride(load_design(name), moments, duration=DURATION)
+    model, steps = build_road_mjcf(ride, drawn=False).compile(), round(DURATION / TIMESTEP)
+
+    def bare() -> None:
+        data, step = mujoco.MjData(model), mujoco.mj_step
+        mujoco.mj_resetDataKeyframe(model, data, 0)
+        for _ in range(steps):
+            step(model, data)
+
+    measured = benchmark.rates(
+        {
+            f"{name}: reduced": (1, lambda: reduced.ride(ride, compiled=True)),
+            f"{name}: MuJoCo, everything recorded": (1, lambda: ride_on_road(ride, make_loop=compiled_road_loop)),
+            f"{name}: bare mj_step": (1, bare),
+        },
+        ROUNDS,
+    )
+    return {candidate: DURATION * values for candidate, values in measured.items()}
+
+
+def main() -> None:
+    """Run everything, print a table, write results/benchmark_ride.json."""
+    report, rows = {}, []
+    for name in DESIGNS:
+        measured = rates(name)
+        fast, recorded, bare = measured.values()
+        ratios = {"reduced_per_mujoco": fast / recorded, "mujoco_time_per_bare": bare / recorded}
+        report[name] = {candidate: float(np.median(values)) for candidate, values in measured.items()}
+        report[name] |= {ratio: float(np.median(values)) for ratio, values in ratios.items()}
+        rows += [(key, f"{value:.3g}") for key, value in report[name].items()]
+    print_table("Seconds of riding per second, and ratios; medians of one run", ("", ""), rows)
+    write_text(Path("results/benchmark_ride.json"), json_text({"provenance": provenance(), "rates": report}))
+
+
+if __name__ == "__main__":
+    main()
