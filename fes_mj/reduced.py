@@ -25,6 +25,7 @@ from fes_mj.drive import POINTS, drive
 from fes_mj.errors import UnstableError, require_extra
 from fes_mj.extrapolation import require_motion
 from fes_mj.joints import JOINTS
+from fes_mj.kinematics import Motion
 from fes_mj.moments import JointMoments
 from fes_mj.ride import Ride, Trace
 from fes_mj.segments import GRAVITY, inertias
@@ -55,9 +56,25 @@ def leg_table(design: Design, moments: JointMoments, lag: float = 0.0) -> FloatA
     I (kg m^2) and dI/da, X (kg m) and dX/da, sum of m dy/da (kg m) of both legs; joint rates per crank speed and joint
     moments commanded (N m, Drive.command) of knee and hip of the first leg, then of the other; AHEAD and BEHIND.
     """
-    told = drive(design, moments, lag)
-    motion, columns = told.motion, np.zeros((POINTS, BEHIND + 1))
-    for body, part in inertias(design).items():
+    columns, breaks = np.zeros((POINTS, BEHIND + 1)), np.zeros(POINTS, bool)
+    for number, leg in enumerate(TWO_LEGS):
+        told = drive(design, moments.of_leg(leg.prefix), lag)
+        behind = round(POINTS * leg.lag / (2 * np.pi))
+        columns[:, :RATES] += np.roll(_masses(told.motion), behind, axis=0)
+        for place, joint in enumerate(JOINTS, len(JOINTS) * number):
+            columns[:, RATES + place] = np.roll(told.motion.joint_rate[joint], behind)
+            columns[:, COMMANDS + place] = np.roll(told.command[joint], behind)
+        breaks |= np.roll(told.breaks, behind)
+    columns[:, AHEAD], columns[:, BEHIND] = _next_breaks(breaks)
+    table = np.vstack([columns, columns[:1]])
+    table.setflags(write=False)
+    return table
+
+
+def _masses(motion: Motion) -> FloatArray:
+    """The columns before RATES of one leg."""
+    columns = np.zeros((POINTS, RATES))
+    for body, part in inertias(motion.design).items():
         centre, (turning, change) = motion.body_point(body, part.centre), motion.rotation[body]
         columns[:, INERTIA] += part.mass * np.abs(centre.first) ** 2 + part.moment * turning**2
         along = (np.conj(centre.first) * centre.second).real
@@ -65,17 +82,7 @@ def leg_table(design: Design, moments: JointMoments, lag: float = 0.0) -> FloatA
         columns[:, RECOIL] += part.mass * centre.first.real
         columns[:, RECOIL_RATE] += part.mass * centre.second.real
         columns[:, HEIGHT_RATE] += part.mass * centre.first.imag
-    for place, joint in enumerate(JOINTS):
-        columns[:, RATES + place], columns[:, COMMANDS + place] = motion.joint_rate[joint], told.command[joint]
-    half_turn = round(POINTS * TWO_LEGS[1].lag / (2 * np.pi))
-    other = np.roll(columns, half_turn, axis=0)
-    columns[:, :RATES] += other[:, :RATES]
-    for start in (RATES, COMMANDS):
-        columns[:, start + 2 : start + 4] = other[:, start : start + 2]
-    columns[:, AHEAD], columns[:, BEHIND] = _next_breaks(told.breaks | np.roll(told.breaks, half_turn))
-    table = np.vstack([columns, columns[:1]])
-    table.setflags(write=False)
-    return table
+    return columns
 
 
 def _next_breaks(breaks: BoolArray) -> tuple[FloatArray, FloatArray]:
@@ -93,7 +100,8 @@ def ride(ride: Ride, compiled: bool = False) -> Trace:
     compiled: in machine code, which takes seconds to make and pays from some ten rides on. Raises InputError for a
     linkage that does not turn and for joints that never enter the moments' range, MissingPartError without numba.
     """
-    require_motion(ride.design, ride.moments.measured_on)
+    for leg in TWO_LEGS:
+        require_motion(ride.design, ride.moments.of_leg(leg.prefix).measured_on)
     table, constants = leg_table(ride.design, ride.moments, ride.lag), _constants(ride)
     advance = _compiled() if compiled else _interpreted()
     columns: Any = table if compiled else _as_floats(table)

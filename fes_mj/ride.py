@@ -117,13 +117,14 @@ def balancing_slope(ride: Ride, speed: float = TRICYCLE_SPEED) -> float:
     Raises InputError as quasi_static, and where that power would climb a wall.
     """
     cadence = speed / ride.travel
-    power = quasi_static(ride.design, replace(ride.moments, torque_velocity=None), cadence).power_mean
+    legs = (replace(ride.moments.of_leg(leg.prefix), torque_velocity=None) for leg in TWO_LEGS)
+    power = sum(quasi_static(ride.design, moments, cadence).power_mean for moments in legs)
     level = replace(ride, road=replace(ride.road, slope=0.0)).load
     rolling = ride.road.rolling_resistance
     # rolling cos b + sin b = sqrt(1 + rolling^2) sin(b + atan rolling)
-    along = (len(TWO_LEGS) * power / speed - level.drag * speed**2) / (level.weight * math.hypot(1.0, rolling))
+    along = (power / speed - level.drag * speed**2) / (level.weight * math.hypot(1.0, rolling))
     if abs(along) >= 1:
-        raise InputError(f"{ride.name}: no slope takes {len(TWO_LEGS) * power:.3g} W at {speed / KMH:.3g} km/h")
+        raise InputError(f"{ride.name}: no slope takes {power:.3g} W at {speed / KMH:.3g} km/h")
     return math.tan(math.asin(along) - math.atan(rolling))
 
 

@@ -69,6 +69,6 @@ def test_the_ride_as_a_table() -> None:
     case = RideCase(Ride(fes_mj.load_design("trt"), HILL, duration=1.0))
     header, *rows = case.trace_csv().splitlines()
     assert header.startswith("time_s,crank_angle_deg,")
-    assert len(rows) == len(case.simulation.trace.time) == 4001
+    assert len(rows) == len(case.simulation.trace.time) == 5001
     table = np.array([row.split(",") for row in rows], float)
     assert np.abs(table[:, 4] - table[:, 5]).max() < 1e-3

@@ -3,7 +3,6 @@
 Needs the extra "optimize". Prints a table and writes results/benchmark_ride.json.
 """
 
-from dataclasses import replace
 from pathlib import Path
 
 import mujoco
@@ -13,7 +12,7 @@ from fes_mj import reduced
 from fes_mj.console import print_table
 from fes_mj.design_file import load_design
 from fes_mj.files import json_text, write_text
-from fes_mj.moments import load_moments
+from fes_mj.moments_file import load_moments
 from fes_mj.provenance import provenance
 from fes_mj.ride import Ride
 from fes_mj.simulation.road import TIMESTEP, build_road_mjcf, compiled_road_loop, ride_on_road
@@ -27,7 +26,7 @@ ROUNDS = 3  # of half a minute
 
 def rates(name: str) -> dict[str, np.ndarray]:
     """Seconds of riding per second by the reduced model, MuJoCo with all records, a bare mj_step loop on its model."""
-    moments = replace(load_moments("p1p2"), torque_velocity=load_torque_velocity("hill"))
+    moments = load_moments("p1p2").at_speed(load_torque_velocity("hill"))
     ride = Ride(load_design(name), moments, duration=DURATION)
     model, steps = build_road_mjcf(ride, drawn=False).compile(), round(DURATION / TIMESTEP)
 

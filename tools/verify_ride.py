@@ -15,7 +15,8 @@ from fes_mj.checks import Check
 from fes_mj.console import track
 from fes_mj.design_file import DESIGNS, load_design
 from fes_mj.files import write_text
-from fes_mj.moments import GROUPS, load_moments
+from fes_mj.moments import GROUPS
+from fes_mj.moments_file import load_moments
 from fes_mj.ride import TRANSMISSIONS, Ride, balancing_slope
 from fes_mj.ride_case import RideCase
 from fes_mj.table import Table
@@ -32,7 +33,7 @@ def rides(duration: float) -> Iterator[Ride]:
             moments = load_moments(group)
             for transmission in TRANSMISSIONS:
                 ride = Ride(load_design(name), moments, transmission=transmission, duration=duration)
-                yield replace(ride, moments=replace(moments, torque_velocity=hill))
+                yield replace(ride, moments=moments.at_speed(hill))
                 yield replace(ride, road=replace(ride.road, slope=balancing_slope(ride)))
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import sys
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple
 
@@ -112,10 +112,10 @@ class RideOptions(PrintOptions, MomentsOptions):
                 allowed.require(option, value)
         if self.launch is not None and self.from_rest is not None:
             raise InputError("--launch and --from-rest exclude each other; a start from rest has no speed")
-        design, moments = load_design(name, self.dims), self.load_moments()
+        design, moments = load_design(name, self.dims), self.load_moments(2)
         self._check_lag(design)
         if self.torque_velocity == "hill":
-            moments = replace(moments, torque_velocity=load_torque_velocity("hill"))
+            moments = moments.at_speed(load_torque_velocity("hill"))
         from fes_mj.ride import Ride, Road
 
         launch = TRICYCLE_SPEED if self.launch is None else self.launch * KMH
@@ -165,7 +165,7 @@ def ride(
         Write a video (.mp4) of the ride beside speed and crank power.
     """
     loaded = options.load(design)
-    inputs = [Path(source) for source in (design, options.moments) if source]
+    inputs = [Path(design), *options.moment_files()]
     if render:
         require_writable(render, "the video", ".mp4", inputs)
     paths = _results(loaded, out, starts, inputs) if out else {}
