@@ -1,15 +1,18 @@
 """The measured case of the cross-check with what verification adds: audit, refinement, the paper's printed values."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, NamedTuple
 
 from fes_mj.crosscheck import Case
+from fes_mj.ride import TRANSMISSIONS, Ride
+from fes_mj.ride_case import RideCase
 from fes_mj.verification.energy import Audit, audit
 from fes_mj.verification.references import Curves, differences, exact_curves
 from fes_mj.verification.refinement import Refinement, refine
 
+RIDE_DURATION = 5.0  # s: some eight turns; tools/verify_ride.py rides a minute
 # Of Case.summary, what a table of runs shows.
 _ROW = (
     *("design", "group", "cadence_rpm", "timestep_s", "power_mean_W", "static_power_mean_W", "relative_difference"),
@@ -36,6 +39,13 @@ class VerificationCase(Case):
     def two_legs(self) -> Case:
         """The same with two legs half a turn apart on one crank."""
         return Case(self.design, self.moments, self.cadence, self.timestep, legs=2, label=f"{self.name}, two legs")
+
+    @cached_property
+    def rides(self) -> list[RideCase]:
+        """Short rides on the flat with either transmission, launched at the speed of the cadence."""
+        ride = Ride(self.design, self.moments, duration=RIDE_DURATION)
+        ride = replace(ride, launch=self.cadence * ride.travel)
+        return [RideCase(replace(ride, transmission=kind)) for kind in TRANSMISSIONS]
 
     @cached_property
     def audit(self) -> Audit:
