@@ -22,7 +22,7 @@ LAUNCH_STEP, SLOPE_STEP = 0.05 * KMH, 1e-4  # to which launch and slope are soug
 class Starts:
     """How a ride begins and what it climbs.
 
-    crank_angle: rad, over a turn, shape (2 * ANGLES,). works: whether it still rides at the ride's end when started
+    crank_angle: rad, over a turn, shape (2 * angles,). works: whether it still rides at the ride's end when started
     from rest there. launch: least speed with which it rides from each of them, m/s. slope: steepest that it still rides
     on at the end when launched at the ride's speed. Both None where nothing that was tried does.
     """
@@ -48,13 +48,13 @@ class Starts:
         }
 
 
-def starts(ride: Ride) -> Starts:
-    """Try rides from rest, launches and slopes.
+def starts(ride: Ride, angles: int = ANGLES) -> Starts:
+    """Try rides from rest, launches and slopes. angles: crank angles that are tried, over half a turn.
 
     A faster launch and a gentler slope are taken to do whatever a slower and a steeper one do. Raises InputError as
     reduced.ride, MissingPartError without numba.
     """
-    half_turn = np.linspace(0, np.pi, ANGLES, endpoint=False)
+    half_turn = np.linspace(0, np.pi, angles, endpoint=False)
 
     def rides(**changes: Any) -> bool:
         return reduced.ride(replace(ride, **changes), compiled=True).rides

@@ -1,5 +1,6 @@
 """How a joint's moment changes with its speed: Hill's hyperbola. Off by default, as in the paper."""
 
+import math
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -56,6 +57,23 @@ AT_ANY_SPEED = TorqueVelocity("none", 1.0, 2.0, {"knee": np.inf, "hip": np.inf})
 @cache
 def load_torque_velocity(name: str) -> TorqueVelocity:
     """A relation ("hill") with its parameters of data/torque_velocity.toml."""
-    path = Path(__file__).parent / "data" / "torque_velocity.toml"
-    row = read_toml(path, "torque-velocity relations").section(name).content
+    row = _row(name)
     return TorqueVelocity(name, row["curvature"], row["eccentric_plateau"], row["max_speed_rad_s"])
+
+
+def drawn_relations(name: str, count: int, seed: int) -> list[TorqueVelocity]:
+    """Relations drawn from the prior on the parameters of the one with this name."""
+    random, prior, best = np.random.default_rng(seed), _row(name)["prior"], load_torque_velocity(name)
+    found = []
+    for faster, flatter, part in zip(*random.standard_normal((2, count)), random.random(count), strict=True):
+        low, high = prior["eccentric_plateau"]
+        factor = math.exp(prior["max_speed_log_sd"] * faster)
+        speeds = {joint: factor * speed for joint, speed in best.max_speed.items()}
+        curvature = best.curvature * math.exp(prior["curvature_log_sd"] * flatter)
+        found.append(TorqueVelocity(name, curvature, low + part * (high - low), speeds))
+    return found
+
+
+def _row(name: str) -> dict[str, Any]:
+    path = Path(__file__).parent / "data" / "torque_velocity.toml"
+    return read_toml(path, "torque-velocity relations").section(name).content

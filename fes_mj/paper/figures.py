@@ -1,6 +1,7 @@
 """The paper's figures from our numbers, and one it lacks."""
 
 from collections.abc import Callable, Iterable, Iterator
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -16,10 +17,13 @@ from fes_mj.paper.known import STAGES, Known
 from fes_mj.paper.left_out import rms
 from fes_mj.paper.printed import SIX_BARS
 from fes_mj.paper.reconstruction import Posterior
+from fes_mj.paper.riding import Riding
 from fes_mj.paper.runs import Runs
 from fes_mj.reference_tricycle import PAPER_TRICYCLE
+from fes_mj.ride import TRANSMISSIONS
 from fes_mj.style import COLOURS, CRANK_LABEL, LINKS, X_LABEL
 from fes_mj.uncertainty import power_rows
+from fes_mj.units import KMH
 from fes_mj.viewing.charts import draw_linkage, over_turn, turn_axis
 from fes_mj.viewing.people import population_figure
 
@@ -159,6 +163,34 @@ def who_can_ride(runs: Runs, known: Known) -> Figure:
     return population_figure([*runs.people.values()])
 
 
+def riding(runs: Runs, known: Known) -> Figure:
+    """Speed on the flat and slope climbed, fixed gear and freewheel, with the scatter of the muscles drawn."""
+    figure, axes = _grid(1, 3, (7.2, 3.0))
+    for number, (ax, (title, of)) in enumerate(zip(axes.flat, RIDING.items(), strict=True)):
+        for row, (group, transmission) in enumerate(product(GROUPS, TRANSMISSIONS)):
+            some = [each for each in runs.rides if (each.group, each.transmission) == (group, transmission)]
+            values = [[np.nan if value is None else value for value in of(each)] for each in some]
+            places = np.arange(len(some)) + 0.18 * (row - 1.5)
+            best, drawn = np.array([each[0] for each in values]), np.array([each[1:] for each in values])
+            look = {"color": COLOURS["knee" if group == GROUPS[0] else "hip"], "ms": 5}
+            face = look["color"] if transmission == "fixed" else "white"
+            ax.plot(np.repeat(places, drawn.shape[1]), drawn.ravel(), ".", color=look["color"], ms=2, alpha=0.5)
+            label = f"{group.upper()}, {transmission}"
+            ax.plot(places, best, "o", markerfacecolor=face, label=label if number == 0 else None, **look)
+        ax.set(xticks=range(len(some)), xticklabels=[each.design.name.upper() for each in some])
+        ax.set_title(title, loc="left", fontsize=9, weight="bold")
+        ax.axhline(0, color="black", lw=0.7)
+    _legend_below(figure, axes, 4)
+    return figure
+
+
+# Title -> values of a Riding, the best known first.
+RIDING: dict[str, Callable[[Riding], list[float | None]]] = {
+    "speed on the flat, km/h": lambda one: [t.mean_speed and t.mean_speed / KMH for t in one.flat],
+    "start angles, % of a turn": lambda one: [100 * each.share for each in one.starts],
+    "slope climbed, %": lambda one: [None if each.slope is None else 100 * each.slope for each in one.starts],
+}
+
 FIGURES: dict[str, Callable[[Runs, Known], Figure]] = {
     "figure-01-moments-over-crank": moments_over_crank,
     "figure-04-power-of-the-trt": power_of_the_trt,
@@ -170,6 +202,7 @@ FIGURES: dict[str, Callable[[Runs, Known], Figure]] = {
     "smoothness-with-masses": smoothness,
     "scores": scores,
     "who-can-ride": who_can_ride,
+    "riding": riding,
 }
 
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from fes_mj.errors import InputError
 from fes_mj.files import json_text, require_replaceable, write_files
-from fes_mj.paper import calibration, gains, metrics, people, readings, recovery, tables, work_shares
+from fes_mj.paper import calibration, gains, metrics, people, readings, recovery, riding, tables, work_shares
 from fes_mj.paper.evidence import load_evidence
 from fes_mj.paper.known import Known, known
 from fes_mj.paper.printed import DATA
@@ -104,6 +104,13 @@ def _pages(facts: Known, runs: Runs, done: Done) -> dict[str, tuple[str, list[Ta
         "people.md": (
             "Who can ride: people instead of the paper's rider",
             [people.percentile_table(), people.population_table(runs)],
+        ),
+        "riding.md": (
+            "How the paper's designs ride",
+            [
+                table(runs.rides)
+                for table in (riding.speed_table, riding.start_table, riding.gear_table, riding.transmission_table)
+            ],
         ),
         "gains.md": (
             "How much of the gain is real",
