@@ -25,8 +25,8 @@ from fes_mj.torque_velocity import drawn_relations, load_torque_velocity
 from fes_mj.uncertainty import with_sd
 from fes_mj.units import KMH, RPM
 
-DRAWS = 10  # of muscles; a standard deviation of so many is known to a quarter of itself
-ANGLES = 24  # crank angles over half a turn, from which it is tried to start
+DRAWS = 6  # of muscles; a standard deviation of so many is known to a third of itself
+ANGLES = 12  # crank angles over half a turn, from which it is tried to start
 SHORT = 20.0  # s: what rides so long from rest goes on
 RATIOS = np.geomspace(0.25, 4.0, 17)  # times the design's own gear ratio
 SLOPES = (0.0, 0.02)  # on which the best gear ratio is sought

@@ -60,7 +60,7 @@ def build_road_mjcf(
     _add_drivetrain(spec, ride)
     if driven:
         add_motors(spec, TWO_LEGS)
-    _add_sensors(spec, ride, driven)
+    _add_sensors(spec, ride, driven, compatible=options.get("integrator") == "euler")
     _replace_keyframe(spec, ride)
     return spec
 
@@ -82,7 +82,7 @@ def _add_drivetrain(spec: Spec, ride: Ride) -> None:
         tendon.solref_limit, tendon.solimp_limit = LOOP_SOLREF, LOOP_SOLIMP
 
 
-def _add_sensors(spec: Spec, ride: Ride, driven: bool) -> None:
+def _add_sensors(spec: Spec, ride: Ride, driven: bool, compatible: bool) -> None:
     kinds, objects = mujoco.mjtSensor, mujoco.mjtObj
     for name, kind in ((f"{ROAD}_angle", kinds.mjSENS_JOINTPOS), (f"{ROAD}_speed", kinds.mjSENS_JOINTVEL)):
         spec.add_sensor(name=name, type=kind, objtype=objects.mjOBJ_JOINT, objname=ROAD)
@@ -90,7 +90,7 @@ def _add_sensors(spec: Spec, ride: Ride, driven: bool) -> None:
         spec.add_sensor(
             name=f"{joint}_moment", type=kinds.mjSENS_ACTUATORFRC, objtype=objects.mjOBJ_ACTUATOR, objname=joint
         )
-    if not ride.fixed:
+    if not ride.fixed and not compatible:  # MJX knows no such sensor
         spec.add_sensor(
             name=DRIVETRAIN, type=kinds.mjSENS_TENDONLIMITFRC, objtype=objects.mjOBJ_TENDON, objname=DRIVETRAIN
         )
