@@ -37,12 +37,15 @@ def fit(angle: FloatArray, values: FloatArray) -> FloatArray:
     angle, values = np.concatenate([angle, bridge[0]]), np.concatenate([values, bridge[1]])
     blocks = [slice(start, start + _BLOCK) for start in range(0, len(angle), _BLOCK)]  # a day of samples fits in memory
     roughness, found = np.diag(_ROUGHNESS * _ORDER**8), np.zeros((TERMS, values.shape[1]))
-    normal = sum(terms.T @ terms for terms in (fourier(angle[block]) for block in blocks)) / len(angle) + roughness
+    # einsum, not BLAS, whose threads would make the last bits depend on how many there are
+    normal = sum(np.einsum("ij,ik->jk", terms, terms) for terms in (fourier(angle[block]) for block in blocks))
+    normal = normal / len(angle) + roughness
     for _ in range(_PASSES):
         missed = -roughness @ found
         for block in blocks:
             terms = fourier(angle[block])
-            missed += terms.T @ (values[block] - terms @ found) / len(angle)
+            miss = values[block] - np.einsum("ij,jk->ik", terms, found)
+            missed += np.einsum("ij,ik->jk", terms, miss) / len(angle)
         found += np.linalg.solve(normal, missed)
     return found
 

@@ -50,6 +50,7 @@ class Description:
     scale: float
     pedal_force: list[str]
     measured_on: ReferenceTricycle
+    cadence_known: bool
 
     @property
     def files(self) -> list[Path]:
@@ -82,6 +83,7 @@ class Description:
             _scale(section, content.section("measured_on").section("rider"), measured_on),
             pedal_force,
             measured_on,
+            bool({"cadence_rpm", "gear_ratio"} & content.section("measured_on").content.keys()),
         )
 
     def turns(self) -> tuple[list[Turn], list[Misreading]]:
@@ -236,8 +238,9 @@ def _measured_on(section: Section) -> ReferenceTricycle:
     linkage = read_values(section, "trt", "kind", "cadence_rpm", "rider", owner="linkage", partial=True)
     own = paper.changed(linkage, read_values(rider, "trt", "sex", owner="rider") | {"sex": sex})
     allowed = VARIABLES["cadence_rpm"]
-    section.content.setdefault("cadence_rpm", own.linkage.cadence / RPM)
-    cadence = section.number("cadence_rpm", allowed.low, allowed.high, allowed.allowed) * RPM
+    cadence = own.linkage.cadence
+    if "cadence_rpm" in section.content:
+        cadence = section.number("cadence_rpm", allowed.low, allowed.high, allowed.allowed) * RPM
     try:
         require_assembly(replace(own, name=f"{section.path}: measured_on"))
     except AssemblyError as error:

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from fes_mj.arrays import FloatArray
+from fes_mj.errors import InputError
 from fes_mj.fourier import fit, fourier
 from fes_mj.joints import PerJoint
 from fes_mj.reference_tricycle import PAPER_TRICYCLE, ReferenceTricycle
@@ -33,7 +34,7 @@ class JointMoments:
     covariance: of the curves' Fourier coefficients, knee's then hip's (fes_mj.fourier), (N m)^2, shape (98, 98);
     None where their error is not known.
     torque_velocity: how the moments change with joint speed; None is the paper's assumption, not at all.
-    measured_on: the tricycle, rider and cadence.
+    measured_on: the tricycle, rider and cadence; cadence_known: whether the cadence is said anywhere.
     left: the left leg's, where it has its own. misreadings: what looks wrong in the file they come from.
     """
 
@@ -44,26 +45,37 @@ class JointMoments:
     covariance: FloatArray | None = None
     torque_velocity: TorqueVelocity | None = None
     measured_on: ReferenceTricycle = PAPER_TRICYCLE
+    cadence_known: bool = True
     left: "JointMoments | None" = None
     misreadings: tuple[Misreading, ...] = ()
 
     @cached_property
     def coefficients(self) -> PerJoint[FloatArray]:
         """Of the Fourier series of each moment's smooth curve through the samples (fourier.fit), N m, shape (49,)."""
-        return PerJoint(*fit(self.crank_angle, np.column_stack([self.knee, self.hip])).T)
+        found = fit(self.crank_angle, np.column_stack([self.knee, self.hip]))
+        return PerJoint(*found.T.copy())  # lie in memory as after a pickle: another process gets the same last bits
 
     def at(self, crank_angle: Any) -> PerJoint[FloatArray]:
         """Moments at crank angles from top dead centre, rad, any shape, N m."""
         terms = fourier(crank_angle)
-        return self.coefficients.map(lambda coefficients: terms @ coefficients)
+        return self.coefficients.map(lambda each: np.asarray(np.einsum("...j,j->...", terms, each)))
 
     def of_leg(self, name: str) -> "JointMoments":
         """The moments of the leg that a name or its prefix (design.LEGS) belongs to."""
         return self.left if self.left and name.startswith("left_") else self
 
     def at_speed(self, relation: TorqueVelocity) -> "JointMoments":
-        """The same moments of both legs, with a torque-velocity relation."""
+        """The same moments of both legs, with a torque-velocity relation. Raises InputError as require_cadence."""
+        self.require_cadence("with joint speed")
         return replace(self, torque_velocity=relation, left=self.left and self.left.at_speed(relation))
+
+    def require_cadence(self, what: str) -> None:
+        """Raise InputError unless it is known at which cadence, hence at which joint speeds, they were measured."""
+        if not self.cadence_known:
+            raise InputError(
+                f"{self.name}: how these moments change {what} depends on the cadence they were measured at, which "
+                "is not said; name it in a measurement file (measured_on.cadence_rpm), or leave that change out"
+            )
 
     @cached_property
     def power_mean(self) -> PerJoint[float]:

@@ -74,18 +74,19 @@ def load_moments(source: str | Path = "p1p2", left: str | Path | None = None) ->
     """
     if left is not None:
         return replace(load_moments(source), left=load_moments(left))
+    path = _FOLDER / f"{source}.csv" if source in GROUPS else Path(source)
+    moments = load_measurement(path).moments
     if source in GROUPS:
-        path = _FOLDER / f"{source}.csv"
         with np.load(path.with_suffix(".npz")) as stored:
-            return replace(load_measurement(path).moments, covariance=stored["covariance"])
-    return load_measurement(Path(source)).moments
+            moments = replace(moments, covariance=stored["covariance"])
+    return moments
 
 
 def load_measurement(path: Path) -> Measurement:
     """Read a CSV with the header COLUMNS, crank angle from top dead centre, or a measurement file (.toml)."""
     if path.suffix.lower() == ".toml":
         description = Description.read(path)
-        return _measurement(path, *description.turns(), description.measured_on)
+        return _measurement(path, *description.turns(), description.measured_on, description.cadence_known)
     table = read_table(path, WHAT, ())
     if table.header != [*COLUMNS]:
         raise InputError(
@@ -95,7 +96,7 @@ def load_measurement(path: Path) -> Measurement:
     table = read_table(path, WHAT, COLUMNS)
     angle, *moments = (bounded(path, table, column, column == COLUMNS[0]) for column in COLUMNS)
     turn = Turn(np.radians(angle), *moments)
-    return _measurement(path, [turn], odd_angles(angle, "deg"), PAPER_TRICYCLE)
+    return _measurement(path, [turn], odd_angles(angle, "deg"), PAPER_TRICYCLE, path.parent == _FOLDER)
 
 
 def measured_files(path: Path) -> list[Path]:
@@ -109,7 +110,9 @@ def moments_csv(moments: JointMoments) -> str:
     return csv_text(dict(zip(COLUMNS, (degrees, *moments.at(np.radians(degrees))), strict=True)))
 
 
-def _measurement(path: Path, turns: list[Turn], odd: list[Misreading], measured_on: ReferenceTricycle) -> Measurement:
+def _measurement(
+    path: Path, turns: list[Turn], odd: list[Misreading], measured_on: ReferenceTricycle, cadence_known: bool
+) -> Measurement:
     """Moments of one turn as they are; of several their mean, with the covariance of that mean by their scatter."""
     for turn in turns:
         if len(np.unique(np.mod(turn.crank_angle, 2 * np.pi))) < 2:
@@ -124,5 +127,5 @@ def _measurement(path: Path, turns: list[Turn], odd: list[Misreading], measured_
         covariance = few**2 * np.cov(rows.T) / len(turns)
         angle = np.linspace(0, 2 * np.pi, 360, endpoint=False)
         mean = Turn(angle, *(fourier(angle) @ part for part in np.split(rows.mean(axis=0), 2)))
-    moments = JointMoments(printable(path.stem), *mean, covariance=covariance, measured_on=measured_on)
+    moments = JointMoments(printable(path.stem), *mean, covariance, None, measured_on, cadence_known)
     return Measurement(tuple(turns), replace(moments, misreadings=(*odd, *odd_moments(turns, moments))))

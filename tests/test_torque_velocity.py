@@ -13,7 +13,7 @@ from fes_mj.moments import JointMoments
 from fes_mj.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.statics import quasi_static
 from fes_mj.torque_map import TorqueMap
-from fes_mj.torque_velocity import load_torque_velocity
+from fes_mj.torque_velocity import drawn_relations, load_torque_velocity
 
 HILL = load_torque_velocity("hill")
 
@@ -91,3 +91,18 @@ def test_the_cross_check_agrees_with_the_relation_too(design: fes_mj.Design, leg
     moments = replace(fes_mj.load_moments("p1p2"), torque_velocity=HILL)
     result = Case(design, moments, legs=legs)
     assert result.agrees, [check for check in result.checks if not check.ok]
+
+
+def test_drawn_relations_span_what_is_published() -> None:
+    """The end of a stimulated quadriceps' force is published at 400 to 870 deg/s and above; half to twice is inside."""
+    drawn = drawn_relations("hill", 2000, 0)
+    speeds = np.array([each.max_speed["knee"] for each in drawn]) / HILL.max_speed["knee"]
+    assert np.median(speeds) == pytest.approx(1, rel=0.05)
+    assert np.quantile(speeds, [0.025, 0.975]) == pytest.approx([0.5, 2.0], rel=0.1)
+    assert all(each.max_speed["hip"] / each.max_speed["knee"] == pytest.approx(0.8) for each in drawn[:10])
+    plateaus = np.array([each.eccentric_plateau for each in drawn])
+    assert plateaus.min() >= 1.1
+    assert plateaus.max() <= 1.7
+    assert drawn_relations("hill", 2000, 0) == drawn
+    for each in drawn[:50]:
+        assert each.factor("knee", 0.0) == 1

@@ -116,6 +116,8 @@ class RideOptions(PrintOptions, MomentsOptions):
         self._check_lag(design)
         if self.torque_velocity == "hill":
             moments = moments.at_speed(load_torque_velocity("hill"))
+        if self.lag:
+            moments.require_cadence("with a lag")
         from fes_mj.ride import Ride, Road
 
         launch = TRICYCLE_SPEED if self.launch is None else self.launch * KMH

@@ -165,7 +165,7 @@ def who_can_ride(runs: Runs, known: Known) -> Figure:
 
 def riding(runs: Runs, known: Known) -> Figure:
     """Speed on the flat and slope climbed, fixed gear and freewheel, with the scatter of the muscles drawn."""
-    figure, axes = _grid(1, 3, (7.2, 3.0))
+    figure, axes = _grid(1, 3, (7.2, 3.0), sharey=False)
     for number, (ax, (title, of)) in enumerate(zip(axes.flat, RIDING.items(), strict=True)):
         for row, (group, transmission) in enumerate(product(GROUPS, TRANSMISSIONS)):
             some = [each for each in runs.rides if (each.group, each.transmission) == (group, transmission)]
@@ -176,7 +176,7 @@ def riding(runs: Runs, known: Known) -> Figure:
             face = look["color"] if transmission == "fixed" else "white"
             ax.plot(np.repeat(places, drawn.shape[1]), drawn.ravel(), ".", color=look["color"], ms=2, alpha=0.5)
             label = f"{group.upper()}, {transmission}"
-            ax.plot(places, best, "o", markerfacecolor=face, label=label if number == 0 else None, **look)
+            ax.plot(places, best, "o", markerfacecolor=face, label=label if number == len(RIDING) - 1 else None, **look)
         ax.set(xticks=range(len(some)), xticklabels=[each.design.name.upper() for each in some])
         ax.set_title(title, loc="left", fontsize=9, weight="bold")
         ax.axhline(0, color="black", lw=0.7)

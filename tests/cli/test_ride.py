@@ -69,6 +69,22 @@ def test_bad_input(arguments: list[str], words: str, capsys: pytest.CaptureFixtu
     assert err.count("\n") == 1
 
 
+def test_own_moments_without_a_cadence(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    """Speed dependence and lag must know how fast the muscles were when they were measured."""
+    plain, described = tmp_path / "own.csv", tmp_path / "own.toml"
+    plain.write_text("crank_angle_deg,knee_Nm,hip_Nm\n" + "".join(f"{a},{10 - a / 20},0\n" for a in range(0, 360, 30)))
+    described.write_text('[moments]\nfile = "own.csv"\n[measured_on]\ncadence_rpm = 50\n')
+    for arguments, code in (
+        ((str(plain),), 2),
+        ((str(plain), "--torque-velocity", "none", "--lag", "0.1"), 2),
+        ((str(plain), "--torque-velocity", "none"), 0),
+        ((str(described), "--lag", "0.1"), 0),
+    ):
+        found, _, err = result(capsys, "ride", "trt", "--duration", "1", "-q", "--moments", *arguments)
+        assert found == code, err
+        assert ("depends on the cadence they were measured at" in err) == (code == 2)
+
+
 def test_starts(capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("numba")
     pytest.importorskip("matplotlib")

@@ -1,0 +1,50 @@
+"""The page on riding: what its rows say, by rides of its own, and what must hold between them."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from fes_mj import load_design, load_moments, reduced
+from fes_mj.paper import riding
+from fes_mj.paper.printed import table1
+from fes_mj.ride import Ride, Road
+from fes_mj.torque_velocity import load_torque_velocity
+from fes_mj.units import KMH
+
+PAGE = json.loads((Path(__file__).parents[2] / "results" / "reproduction.json").read_text(encoding="utf-8"))["riding"]
+SPEEDS = {
+    (row["design"], row["group"], row["transmission"]): row
+    for row in PAGE["How fast they ride, and whether they keep riding"]
+}
+
+
+def test_every_design_rides_with_both_groups_and_transmissions() -> None:
+    assert len(SPEEDS) == 4 * len(table1()) == 20
+    assert len(PAGE["The gear ratio that suits"]) == len(PAGE["From where they start, and what they climb"]) == 20
+
+
+@pytest.mark.parametrize(("transmission", "rides"), [("freewheel", False), ("fixed", True)])
+def test_d1_on_the_slope_that_its_mean_power_climbs(transmission: str, rides: bool) -> None:
+    row = SPEEDS["D1", "p1p2", transmission]
+    moments = load_moments().at_speed(load_torque_velocity("hill"))
+    road = Road(slope=row["slope, %"] / 100)
+    ride = Ride(load_design("d1"), moments, road=road, transmission=transmission, duration=20.0)
+    assert reduced.ride(ride).rides is rides
+    assert (row["on this slope"] == "rides") is rides
+
+
+def test_a_row_is_what_a_ride_alone_says() -> None:
+    row = SPEEDS["TRT", "p1p3", "fixed"]
+    ride = Ride(load_design("trt"), load_moments("p1p3").at_speed(load_torque_velocity("hill")), transmission="fixed")
+    speed = reduced.ride(ride).mean_speed
+    assert speed is not None
+    assert row["speed, km/h"].startswith(f"{speed / KMH:.1f} +- ")
+
+
+def test_muscles_are_drawn_anew_and_always_the_same() -> None:
+    best, *drawn = riding._muscles("p1p2")
+    again = riding._muscles("p1p2")[1:]
+    assert best.torque_velocity == load_torque_velocity("hill")
+    assert len({each.torque_velocity.max_speed["knee"] for each in drawn if each.torque_velocity}) == riding.DRAWS
+    assert [each.knee.tolist() for each in drawn] == [each.knee.tolist() for each in again]
