@@ -97,7 +97,8 @@ def uncertain_table(moments: JointMoments) -> WorkTable:
         )
     variance, directions = np.linalg.eigh(moments.covariance)
     large = variance > _NEGLIGIBLE * variance[-1]
-    deviations = PerJoint(*np.split(directions[:, large] * np.sqrt(variance[large]), 2))
+    # rounded: the last bits depend on the threads that the library uses, and results must not
+    deviations = PerJoint(*np.split(np.round(directions[:, large] * np.sqrt(variance[large]), 10), 2))
     torque = torque_map(moments)
 
     def sets(joint: str, angle: FloatArray) -> FloatArray:
