@@ -35,16 +35,20 @@ def load_design(source: str | Path, dims: str = "identified") -> Design:
 
 
 def _read(path: Path) -> Design:
-    content = read_toml(path, "design file")
+    return read_design(read_toml(path, "design file"), printable(path.stem))
+
+
+def read_design(content: Section, name: str) -> Design:
+    """A design from the content of a design file. Raises InputError as load_design."""
     content.only(("linkage", "rider"))
     linkage = content.section("linkage")
     if isinstance(linkage.content.get("rider"), str):
-        raise InputError(f"{path}: rider = ... stands in [linkage]; move it above the first table")
+        raise InputError(f"{content.path}: rider = ... stands in [linkage]; move it above the first table")
     kind = linkage.choice("kind", ARCHITECTURES)
     words = ("kind",) if kind == "trt" else ("kind", "branch")
     numbers = read_values(linkage, kind, *words)
     branch = linkage.choice("branch", BRANCHES, Linkage.branch)
-    return Design(printable(path.stem), Linkage(kind, **numbers, branch=branch), _rider(content, kind))
+    return Design(name, Linkage(kind, **numbers, branch=branch), _rider(content, kind))
 
 
 def _rider(content: Section, kind: str) -> Rider:

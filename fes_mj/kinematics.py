@@ -38,7 +38,7 @@ class Rotation(NamedTuple):
         return Rotation(self.first - other.first, self.second - other.second)
 
 
-def _close_dyad(start: ComplexArray, end: ComplexArray, first: float, second: float) -> ComplexArray:
+def close_dyad(start: ComplexArray, end: ComplexArray, first: float, second: float) -> ComplexArray:
     """Joint of links of length `first` (at `start`) and `second` (at `end`), left of start -> end; NaN if none."""
     span = end - start
     inverse_square = span.real**2
@@ -74,11 +74,11 @@ def positions(design: Design, crank_angle: FloatArray) -> Points:
             points["rocker_pivot"] = np.asarray(linkage.ground)
             ends = (points["rocker_pivot"], linkage.rocker), (points["crank_pin"], linkage.coupler)
             (start, first), (end, second) = ends if linkage.branch == "left" else ends[::-1]
-            points["rocker_joint"] = _close_dyad(start, end, first, second)
+            points["rocker_joint"] = close_dyad(start, end, first, second)
         origin, tip = (points[name] for name in BODIES[linkage.architecture.pedal_body])
         points["pedal"] = origin + (tip - origin) * linkage.pedal_offset
         # knee above the hip-pedal line: the pedal lies on the rider's -x side, so that is right of hip -> pedal
-        points["knee"] = _close_dyad(points["pedal"], points["hip"], design.knee_to_pedal, design.rider.thigh)
+        points["knee"] = close_dyad(points["pedal"], points["hip"], design.knee_to_pedal, design.rider.thigh)
     return points
 
 

@@ -16,6 +16,8 @@ COLOURS = {
 }
 # Bodies; the video's materials and the figures' lines
 LINKS = {"thigh": "#cdb399", "shank": "#e0c9b0", "crank": "#e07d28", "rocker": "#736bad", "coupler": "#5c945c"}
+# Curves of the same kind beside each other, in their order
+SERIES = ("#1f4fd8", "#d97a00", "#3a7d44")
 GOOD, BAD = "#1a7f37", "#c01c28"
 INK, FAINT = "#20242c", "#5a606c"
 
@@ -47,3 +49,8 @@ def rgb(colour: str) -> tuple[float, float, float]:
     """Red, green and blue of "#rrggbb", each 0 to 1."""
     red, green, blue = (round(int(colour[i : i + 2], 16) / 255, 3) for i in (1, 3, 5))
     return red, green, blue
+
+
+def hex_colour(colour: tuple[float, float, float]) -> str:
+    """The colour as "#rrggbb": the inverse of rgb."""
+    return "#" + "".join(f"{round(255 * part):02x}" for part in colour)

@@ -7,3 +7,8 @@ def printable(text: str) -> str:
     The result can be printed, drawn, encoded as UTF-8 and stand in XML.
     """
     return "".join(each if each.isprintable() else each.encode("unicode_escape").decode() for each in text)
+
+
+def typeset(text: str) -> str:
+    """A number as a page sets it: with a true minus, and one sign for +-."""
+    return text.replace("+-", "\N{PLUS-MINUS SIGN}").replace("-", "\N{MINUS SIGN}")

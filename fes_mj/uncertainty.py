@@ -4,6 +4,7 @@ Mean power is linear in the two moment curves, hence in their Fourier coefficien
 in their covariance. Two designs under the same curves have correlated powers; their ratio is surer than either.
 """
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -23,14 +24,29 @@ def power_weights(motion: Motion, cadence: Any, torque: TorqueMap | ReferenceTri
     shape (designs, 1). torque: with a torque-velocity relation the sign of its moments, by which the relation tells
     shortening from lengthening, is kept; without one the tricycle of the measurement is enough.
     """
-    angle, rate, parts = motion.joint_angle, motion.joint_rate, []
+    parts = [
+        (gain[..., None, :] @ features)[..., 0, :] / gain.shape[-1]
+        for gain, features in _gains(motion, cadence, torque)
+    ]
+    return np.asarray(cadence * np.concatenate(parts, axis=-1))
+
+
+def instant_power_weights(motion: Motion, cadence: float, torque: TorqueMap) -> FloatArray:
+    """The same of the power at every crank angle of one design, shape (angles, 98): their mean is power_weights."""
+    parts = [gain[:, None] * features for gain, features in _gains(motion, cadence, torque)]
+    return np.asarray(cadence * np.concatenate(parts, axis=-1))
+
+
+def _gains(
+    motion: Motion, cadence: Any, torque: TorqueMap | ReferenceTricycle
+) -> Iterator[tuple[FloatArray, FloatArray]]:
+    """Of knee, then hip: power per moment and crank speed, and the terms of the series where its moment is read."""
+    angle, rate = motion.joint_angle, motion.joint_rate
     for joint in JOINTS:
         gain, source = rate[joint], torque.source_angle(joint, angle[joint], rate[joint])
         if isinstance(torque, TorqueMap) and torque.moments.torque_velocity:
             gain = gain * torque.speed_factor(joint, source, cadence * gain)
-        features = fourier(source)
-        parts.append((gain[..., None, :] @ features)[..., 0, :] / gain.shape[-1])
-    return np.asarray(cadence * np.concatenate(parts, axis=-1))
+        yield gain, fourier(source)
 
 
 def power_rows(motion: Motion, cadence: float, reference: ReferenceTricycle) -> FloatArray:

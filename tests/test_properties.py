@@ -82,7 +82,7 @@ def test_turning_the_tricycle_changes_nothing(design: Design, moments: JointMome
 def test_the_mirror_image_closes_on_the_other_branch(design: Design) -> None:
     """A dyad seen in the mirror is the dyad closed from its other end."""
     points = kinematics.positions(design, ANGLES)
-    mirrored = kinematics._close_dyad(
+    mirrored = kinematics.close_dyad(
         np.conj(points["hip"]) + 0 * points["pedal"], np.conj(points["pedal"]), design.rider.thigh, design.knee_to_pedal
     )
     assert mirrored == pytest.approx(np.conj(points["knee"]), abs=1e-12)

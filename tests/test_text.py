@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, strategies
 from hypothesis.strategies import characters
 
-from fes_mj.text import printable
+from fes_mj.text import printable, typeset
 
 
 @given(strategies.text(characters()))  # surrogates too: a name on disk need not be UTF-8
@@ -29,3 +29,7 @@ def test_any_text_can_be_shown(text: str) -> None:
 )
 def test_what_has_no_picture_becomes_an_escape(text: str, shown: str) -> None:
     assert printable(text) == shown
+
+
+def test_numbers_are_set_with_their_own_signs() -> None:
+    assert typeset("-1.5 +- 0.2") == "\u22121.5 \u00b1 0.2"

@@ -13,7 +13,7 @@ from fes_mj.paper.printed import SIX_BARS
 from fes_mj.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.statics import difference_sd, quasi_static, ratio_sd
 from fes_mj.torque_velocity import load_torque_velocity
-from fes_mj.uncertainty import power_weights
+from fes_mj.uncertainty import instant_power_weights, power_weights
 from fes_mj.variables import lengths, replaced, with_lengths
 
 _ANGLE = np.radians(np.arange(0.0, 360.0))
@@ -44,6 +44,9 @@ def test_power_is_linear_in_the_coefficients(relation: str | None) -> None:
     for name in ("trt", "r1", "d1"):
         result = quasi_static(fes_mj.load_design(name), moments)
         assert result.power_weights @ coefficients == pytest.approx(result.power_mean, abs=1e-4)
+        at_once = instant_power_weights(result.motion, result.cadence, result.torque)
+        np.testing.assert_allclose(at_once @ coefficients, result.power, atol=1e-2)
+        np.testing.assert_allclose(at_once.mean(axis=0), result.power_weights, atol=1e-10)
 
 
 def test_sd_of_power_ratio_and_difference_against_drawn_curves(moments: JointMoments) -> None:

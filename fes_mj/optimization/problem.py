@@ -165,7 +165,7 @@ class Problem:
         Designs whose lengths already violate a constraint are not turned.
         """
         design = self.batch(x)
-        lengths = self._lengths(design, x[:, :LENGTH_COUNT])
+        lengths = self.length_values(design, x[:, :LENGTH_COUNT])
         sound = np.all(_margins(self.geometry, lengths) >= 0, axis=1)
         turn = cycles(take(design, sound), self.table, self.points) if sound.any() else None
         motion = np.full((len(x), len(self.motion)), np.nan)
@@ -202,8 +202,8 @@ class Problem:
             if margin < 0
         ]
 
-    def _lengths(self, design: Design, x: FloatArray) -> FloatArray:
-        """Values of the constraints on lengths, shape (n, 8); x: the lengths, shape (n, 9)."""
+    def length_values(self, design: Design, x: FloatArray) -> FloatArray:
+        """Values of the constraints of `geometry`, shape (n, 8); x: the lengths, shape (n, 9)."""
         linkage, polygon = design.linkage, self.limits.polygon
         others = np.stack([np.abs(linkage.pivot_to_crank), linkage.coupler, linkage.rocker])
         columns = (
