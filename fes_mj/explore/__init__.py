@@ -1,0 +1,1 @@
+"""The designer's page: dimensions dragged in the browser, and at once what they do."""

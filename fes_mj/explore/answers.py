@@ -1,0 +1,116 @@
+"""Everything that the page can ask for: a question and what it says in, what is shown out. No browser, no network."""
+
+from collections.abc import Callable
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any, TypeVar
+
+from fes_mj.design import LEGS, Design
+from fes_mj.design_file import DESIGNS, design_toml, load_design
+from fes_mj.errors import InputError
+from fes_mj.explore.dimensions import content_of, design_of, dimensions
+from fes_mj.explore.runs import simulated
+from fes_mj.explore.turn import turn
+from fes_mj.moments import GROUPS, JointMoments
+from fes_mj.moments_file import load_moments
+from fes_mj.simulation.export import mjcf_text
+from fes_mj.simulation.mjcf import build_mjcf
+from fes_mj.style import COLOURS, SERIES
+from fes_mj.text import printable
+
+Loaded = TypeVar("Loaded")
+
+
+class Answers:
+    """What a page can ask, by name, of one design to begin with and the joint moments that are known.
+
+    A question is a JSON object: "design" as dimensions.content_of, "moments" by name, "legs"; or a file's "name" and
+    "text". Every answer may raise InputError.
+    """
+
+    def __init__(self, design: Design, moments: JointMoments) -> None:
+        self.design, self.chosen = design, moments.name
+        self.moments = {group: load_moments(group) for group in GROUPS} | {moments.name: moments}
+        self.by_name: dict[str, Callable[[dict[str, Any]], dict[str, Any]]] = {
+            "start": self.start,
+            "turn": self.turn,
+            "save": self.save,
+            "model": self.model,
+            "simulate": self.simulate,
+            "open-design": self.open_design,
+            "open-moments": self.open_moments,
+        }
+
+    def start(self, _: dict[str, Any]) -> dict[str, Any]:
+        """What the page needs once."""
+        designs = {name: content_of(load_design(name)) for name in DESIGNS}
+        return {
+            "designs": designs | {self.design.name: content_of(self.design)},
+            "design": self.design.name,
+            "dimensions": dimensions(),
+            "moments": [*self.moments],
+            "chosen": self.chosen,
+            "series": SERIES,
+            "colours": COLOURS,
+        }
+
+    def turn(self, question: dict[str, Any]) -> dict[str, Any]:
+        """Motion, curves and numbers of a design under all known moments."""
+        return turn(design_of(question.get("design")), self.moments, _legs(question))
+
+    def save(self, question: dict[str, Any]) -> dict[str, Any]:
+        """A design as the text of its file."""
+        design = design_of(question.get("design"))
+        return {"name": f"{design.name}.toml", "text": design_toml(design, "Made with fes_mj explore.")}
+
+    def model(self, question: dict[str, Any]) -> dict[str, Any]:
+        """The MuJoCo model of a design."""
+        design, legs = design_of(question.get("design")), _legs(question)
+        return {"name": f"{design.name}.xml", "text": mjcf_text(build_mjcf(design, legs=legs))}
+
+    def simulate(self, question: dict[str, Any]) -> dict[str, Any]:
+        """A run in MuJoCo beside statics. Raises UnstableError too."""
+        return simulated(design_of(question.get("design")), self._moments(question), _legs(question))
+
+    def open_design(self, question: dict[str, Any]) -> dict[str, Any]:
+        """A design file's design."""
+        return {"design": content_of(_read(question, load_design))}
+
+    def open_moments(self, question: dict[str, Any]) -> dict[str, Any]:
+        """Take a file of joint moments among the known ones."""
+        moments = _read(question, load_moments)
+        if moments.name in GROUPS:
+            raise InputError(f"{moments.name} is the name of a group; give the file of moments another name")
+        self.moments[moments.name] = moments
+        return {
+            "name": moments.name,
+            "moments": [*self.moments],
+            "warnings": [each.text for each in moments.misreadings],
+        }
+
+    def _moments(self, question: dict[str, Any]) -> JointMoments:
+        name = question.get("moments")
+        if name not in self.moments:
+            raise InputError(f"moments is {name!r}; it must be one of {', '.join(self.moments)}")
+        return self.moments[name]
+
+
+def _legs(question: dict[str, Any]) -> int:
+    legs = question.get("legs", 1)
+    if legs not in LEGS:
+        raise InputError(f"legs is {legs!r}; it must be one of {', '.join(map(str, LEGS))}")
+    return int(legs)
+
+
+def _read(question: dict[str, Any], load: Callable[[str], Loaded]) -> Loaded:
+    """What a file of the page's user holds, read as a file on this machine is."""
+    name, text = question.get("name"), question.get("text")
+    if not isinstance(name, str) or not isinstance(text, str):
+        raise InputError("the page sent no file; it must have a name and a text")
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / printable(Path(name).name)[-100:]
+        path.write_text(text, encoding="utf-8")
+        try:
+            return load(str(path))
+        except InputError as error:
+            raise InputError(str(error).replace(f"{path.parent}{'/'}", "")) from None

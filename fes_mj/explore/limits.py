@@ -1,0 +1,68 @@
+"""Where a design leaves the limits of the paper's Eq. 15, as the optimiser counts them."""
+
+from dataclasses import replace
+from functools import cache
+from typing import Any, NamedTuple
+
+from fes_mj.design import Design
+from fes_mj.moments_file import load_moments
+from fes_mj.optimization.problem import LENGTH_COUNT, Constraint, Problem, make_problem
+from fes_mj.statics import QuasiStatic
+from fes_mj.text import typeset
+
+
+class Mark(NamedTuple):
+    """How the page speaks of a constraint, and which of its numbers and sliders it colours."""
+
+    words: str
+    colours: tuple[str, ...]
+
+
+# By constraint. A joint's speed and the gear ratio are bounded by the optimiser alone.
+MARKS = {
+    "crank_length": Mark("the crank", ("R2",)),
+    "rocker_length": Mark("the rocker", ("R10",)),
+    "ankle_to_pedal": Mark("the foot from ankle to pedal", ("R6",)),
+    "crank_shortest": Mark("the shortest other link less the crank", ("R2",)),
+    "grashof": Mark("the Grashof margin", ("grashof",)),
+    "rocker_pivot_inside": Mark("the rocker pivot's distance inside the design space", ("R1x", "R1y")),
+    "crank_centre_inside": Mark("the crank centre's distance inside the design space", ("R7x", "R7y")),
+    "knee_min": Mark("the smallest knee angle", ("knee_range",)),
+    "knee_max": Mark("the largest knee angle", ("knee_range",)),
+    "hip_min": Mark("the smallest hip angle", ("hip_range",)),
+    "hip_max": Mark("the largest hip angle", ("hip_range",)),
+}
+
+
+def broken(design: Design, solved: QuasiStatic | None) -> list[dict[str, Any]]:
+    """The limits that a design leaves: what they colour, and a sentence. solved: any turn of it, if it turns."""
+    problem = replace(_problem(), template=design)
+    values = _lengths(problem, design)
+    if solved:
+        for joint, (low, high) in solved.joint_range_deg.items():
+            values |= {f"{joint}_min": low, f"{joint}_max": high}
+    return [
+        {"marks": MARKS[each.name].colours, "text": _sentence(each, values[each.name])}
+        for each in problem.constraints
+        if each.name in MARKS and each.name in values and not each.margin(values[each.name]) >= 0
+    ]
+
+
+def _lengths(problem: Problem, design: Design) -> dict[str, float]:
+    """Values of the limits on lengths by name, m; a TRT has no rocker, and the design space is six-bars'."""
+    if design.linkage.kind == "trt":
+        return {"crank_length": design.linkage.crank, "ankle_to_pedal": design.linkage.foot}
+    values = problem.length_values(design, problem.variables(design)[None, :LENGTH_COUNT])[0]
+    return dict(zip((each.name for each in problem.geometry), values.tolist(), strict=True))
+
+
+@cache
+def _problem() -> Problem:
+    return make_problem("cdt", load_moments())  # moments and kind play no part in the limits that are shown
+
+
+def _sentence(constraint: Constraint, value: float) -> str:
+    unit, factor = ("cm", 100.0) if constraint.unit == "m" else (constraint.unit, 1.0)
+    bound = "at least" if constraint.at_least else "at most"
+    words, shown = MARKS[constraint.name].words, typeset(f"{factor * value:.2f}")
+    return f"{words} is {shown} {unit}; it must be {bound} {factor * constraint.limit:g}"

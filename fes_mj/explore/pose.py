@@ -1,0 +1,131 @@
+"""Where every body is over the turn, how it is drawn, and a linkage that cannot close: it is left open there."""
+
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from fes_mj.arrays import ComplexArray, FloatArray
+from fes_mj.design import BODIES, Design
+from fes_mj.geometry import DYADS, LEAST_CLEARANCE, clearances
+from fes_mj.kinematics import close_dyad, positions
+from fes_mj.segments import foot_points
+from fes_mj.simulation.appearance import BACKREST, PARTS, SEAT_DEPTH, SEAT_LENGTH
+from fes_mj.style import hex_colour
+
+Ends = dict[str, tuple[ComplexArray, ComplexArray]]  # body -> its origin and tip over crank angle, m
+
+
+class Bar(NamedTuple):
+    """A thick line that is drawn, in the frame of a body ("" is the tricycle): ends and thickness in m."""
+
+    body: str
+    part: str
+    start: complex
+    end: complex
+
+    def as_json(self) -> dict[str, Any]:
+        """As the page reads it; the colour is the video's."""
+        part = PARTS[self.part]
+        return {
+            "body": self.body,
+            "line": [self.start.real, self.start.imag, self.end.real, self.end.imag],
+            "width": 2 * part.size,
+            "colour": hex_colour(part.colour),
+        }
+
+
+def ends(design: Design, crank_angle: FloatArray) -> Ends:
+    """Origin and tip of every body at crank angles, rad, shape (angles,).
+
+    Where two links cannot close, their ends point at each other along the line on which they lack least, and what they
+    carry goes on from there.
+    """
+    linkage, points = design.linkage, positions(design, crank_angle)
+    hip, pin = points["hip"], points["crank_pin"]
+    found = {"crank": (np.broadcast_to(points["crank_centre"], pin.shape), pin)}
+    if "coupler" in linkage.architecture.bodies:
+        pivot = points["rocker_pivot"]
+        tip, origin = _apart(pivot, pin, linkage.rocker, linkage.coupler, points["rocker_joint"])
+        found |= {"rocker": (np.broadcast_to(pivot, pin.shape), tip), "coupler": (origin, pin)}
+    origin, tip = found[linkage.architecture.pedal_body]
+    pedal = origin + (tip - origin) * linkage.pedal_offset
+    with np.errstate(invalid="ignore", divide="ignore"):
+        knee = close_dyad(pedal, hip, design.knee_to_pedal, design.rider.thigh)
+    above, below = _apart(hip, pedal, design.rider.thigh, design.knee_to_pedal, knee)
+    return found | {"thigh": (np.broadcast_to(hip, pin.shape), above), "shank": (below, pedal)}
+
+
+def _apart(
+    start: ComplexArray, end: ComplexArray, first: float, second: float, joint: ComplexArray
+) -> tuple[ComplexArray, ComplexArray]:
+    """Tips of the links at `start` and at `end`: their joint or, where that is NaN, as near as they come."""
+    span = end - start
+    distance = np.abs(span)
+    along = np.where(distance > 0, span / np.where(distance > 0, distance, 1), 1)
+    far = distance > first + second  # stretched; otherwise the longer link folds back over the shorter
+    tips = (
+        start + np.where(far | (first > second), first, -first) * along,
+        end - np.where(far | (second > first), second, -second) * along,
+    )
+    open_there = np.isnan(joint)
+    return np.where(open_there, tips[0], joint), np.where(open_there, tips[1], joint)
+
+
+def failing_angle(design: Design) -> float | None:
+    """Crank angle at which a linkage first lacks most to turn, rad; None if it closes all round."""
+    for each in clearances(design):
+        if not each.margin[0] >= LEAST_CLEARANCE:
+            return float(each.crank_angle[0])
+    return None
+
+
+def bars(design: Design) -> Iterator[Bar]:
+    """What is drawn, from back to front: the tricycle, the leg, then the linkage beside it, as in the video."""
+    linkage, corner = design.linkage, SEAT_DEPTH * (0.5 - 1j)
+    yield Bar("", "frame", corner, complex(linkage.ground))
+    yield Bar("", "frame", complex(linkage.ground), complex(linkage.crank_centre))
+    yield Bar("", "seat", corner, corner - SEAT_LENGTH)
+    yield Bar("", "seat", corner, corner + BACKREST * complex(np.exp(1j * linkage.seat_angle)))
+    ankle, heel, toe = foot_points(design)
+    sole, radius = (toe - heel) / abs(toe - heel), PARTS["boot"].size
+    yield Bar("thigh", "thigh", 0j, complex(design.rider.thigh))
+    yield Bar("shank", "shank", 0j, ankle)
+    yield Bar("shank", "boot", 0.6 * ankle, ankle)
+    yield Bar("shank", "boot", heel + radius * sole, toe - radius * sole)
+    pedal_body, lengths = linkage.architecture.pedal_body, design.link_lengths
+    for body in ("coupler", "crank", "rocker"):
+        if body in lengths:
+            tip = complex(lengths[body])
+            yield Bar(body, body, 0j, tip)
+            if body == pedal_body != "crank":
+                pedal = tip * complex(linkage.pedal_offset)
+                yield Bar(body, body, tip if body == "rocker" else 0j, pedal)
+                if body == "coupler":
+                    yield Bar(body, body, pedal, tip)
+
+
+def as_json(design: Design, crank_angle: FloatArray) -> dict[str, Any]:
+    """Bodies over the turn and what is drawn of them, m; where a linkage that does not turn fails, deg."""
+    bodies, failing = ends(design, crank_angle), failing_angle(design)
+    return {
+        "bodies": {body: [_plane(end) for end in pair] for body, pair in bodies.items()},
+        "pedal": _plane(bodies["shank"][1]),
+        "pedal_on": design.linkage.architecture.pedal_body,
+        "bars": [bar.as_json() for bar in bars(design)],
+        "pins": [pin(joint, bodies) for joint in design.linkage.architecture.joints],
+        "dyads": [pair for pair in DYADS if pair[0] in bodies],
+        "failing_deg": None if failing is None else float(np.degrees(failing)),
+    }
+
+
+def pin(joint: str, bodies: Ends) -> dict[str, Any]:
+    """The pin of a joint, at the origin (0) or tip (1) of a body."""
+    body, end = next((body, BODIES[body].index(joint)) for body in bodies if joint in BODIES[body])
+    part = PARTS.get(joint, PARTS["pin"])
+    return {"body": body, "end": end, "radius": part.size, "colour": hex_colour(part.colour)}
+
+
+def _plane(points: ComplexArray) -> list[FloatArray]:
+    """X and y to a tenth of a millimetre."""
+    return [np.round(part, 4) for part in (points.real, points.imag)]

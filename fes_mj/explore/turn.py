@@ -1,0 +1,113 @@
+"""What a design does in a turn, as the page shows it: motion, curves and numbers, or why there are none."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from fes_mj.arrays import FloatArray
+from fes_mj.characteristics import motion_characteristics, power_characteristics
+from fes_mj.design import LEGS, Design
+from fes_mj.errors import InputError
+from fes_mj.explore import pose
+from fes_mj.explore.limits import broken
+from fes_mj.extrapolation import beyond
+from fes_mj.geometry import grashof_margin
+from fes_mj.inverse_dynamics import crank_moment
+from fes_mj.joint_forces import JointForces, peaks
+from fes_mj.joints import JOINTS
+from fes_mj.moments import JointMoments
+from fes_mj.statics import QuasiStatic, quasi_static
+from fes_mj.text import typeset
+from fes_mj.uncertainty import instant_power_weights, with_sd
+from fes_mj.units import RPM
+
+POINTS = 360  # crank angles of a turn, from 0
+DIGITS = 3  # after the point, of curves in W and deg
+_ANGLES = np.linspace(0, 2 * np.pi, POINTS, endpoint=False)
+
+
+def turn(design: Design, moments: Mapping[str, JointMoments], legs: int = 1) -> dict[str, Any]:
+    """A turn under each of several moments; curves are of all legs together, numbers of one.
+
+    Without power, because the linkage does not turn or a joint never enters the moments' range, "error" says why.
+    """
+    answer = pose.as_json(design, _ANGLES) | {"cadence_rpm": design.linkage.cadence / RPM}
+    try:
+        solved = {name: quasi_static(design, each, points=POINTS) for name, each in moments.items()}
+    except InputError as error:
+        return answer | {"error": str(error), "broken": broken(design, None)}
+    first = next(iter(solved.values()))
+    return answer | {
+        "broken": broken(design, first),
+        "numbers": _numbers(first),
+        "joints": {joint: np.round(np.degrees(angle), DIGITS) for joint, angle in first.joint_angle.items()},
+        "moments": {name: _under(each, legs) for name, each in solved.items()},
+    }
+
+
+def _under(solved: QuasiStatic, legs: int) -> dict[str, Any]:
+    """Curves and numbers that depend on the moments."""
+    massive = solved.cadence * crank_moment(solved.motion, solved.torque, solved.cadence)
+    covariance, reference = solved.moments.covariance, solved.torque.reference
+    deviation = None
+    if covariance is not None:
+        weights = _all_legs(instant_power_weights(solved.motion, solved.cadence, solved.torque), legs)
+        deviation = np.sqrt(np.sum((weights @ covariance) * weights, axis=1))
+    outside = beyond(reference, solved.joint_angle)
+    return {
+        "static": np.round(_all_legs(solved.power, legs), DIGITS),
+        "masses": np.round(_all_legs(massive, legs), DIGITS),
+        "sd": None if deviation is None else np.round(deviation, DIGITS),
+        "power_mean_W": solved.power_mean,
+        "range_deg": {joint: np.degrees(reference.ranges[joint]) for joint in JOINTS},
+        "outside": np.maximum(*outside) > 0,
+        "numbers": _power_numbers(solved),
+        "note": solved.extrapolation.verdict,
+    }
+
+
+def _all_legs(curve: FloatArray, legs: int) -> FloatArray:
+    """A curve of one leg (angles first) summed over the legs, which trail the first by whole steps."""
+    steps = (round(leg.lag / (2 * np.pi) * POINTS) for leg in LEGS[legs])
+    return np.asarray(sum(np.roll(curve, step, axis=0) for step in steps))
+
+
+def _number(name: str, words: str, text: str, unit: str) -> dict[str, str]:
+    return {"name": name, "words": words, "text": typeset(text), "unit": unit}
+
+
+def _numbers(solved: QuasiStatic) -> list[dict[str, str]]:
+    """Numbers that do not depend on the moments."""
+    design, motion = solved.design, solved.motion
+    speed = {joint: np.degrees(np.mean(np.abs(rate))) * solved.cadence for joint, rate in motion.joint_rate.items()}
+    rows = [
+        _number("cadence", "cadence", f"{solved.cadence / RPM:.1f}", "rpm"),
+        *(
+            _number(f"{joint}_range", f"{joint} range", f"{low:.1f} to {high:.1f}", "deg")
+            for joint, (low, high) in solved.joint_range_deg.items()
+        ),
+        _number("knee_speed", "mean knee speed", f"{speed['knee']:.0f}", "deg/s"),
+        _number(
+            "transmission",
+            "least transmission angle",
+            f"{float(motion_characteristics(motion)['transmission_angle_min_deg']):.1f}",
+            "deg",
+        ),
+    ]
+    if design.linkage.kind != "trt":
+        rows.append(_number("grashof", "Grashof margin", f"{100 * float(grashof_margin(design)[0]):.2f}", "cm"))
+    return rows
+
+
+def _power_numbers(solved: QuasiStatic) -> list[dict[str, str]]:
+    character = power_characteristics(solved.power)
+    forces = peaks(JointForces(solved).with_masses)
+    joint = max(forces, key=lambda name: forces[name])
+    return [
+        _number("power", "mean power, one leg", with_sd(solved.power_mean, solved.power_sd), "W"),
+        _number("work", "work per turn", f"{solved.work_per_turn:.2f}", "J"),
+        _number("inactive", "inactive zone", f"{100 * float(character['inactive_zone_share']):.0f}", "% of the turn"),
+        _number("ripple", "power, peak to peak", f"{float(character['power_peak_to_peak_W']):.0f}", "W"),
+        _number("force", f"peak pin force ({joint.replace('_', ' ')})", f"{forces[joint]:.0f}", "N"),
+    ]

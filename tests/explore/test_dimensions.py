@@ -1,0 +1,53 @@
+"""What the page holds is a design file's content: there and back, with the same refusals."""
+
+import pytest
+
+import fes_mj
+from fes_mj.design import Design
+from fes_mj.errors import InputError
+from fes_mj.explore.dimensions import content_of, design_of, dimensions
+from fes_mj.variables import component
+
+
+def test_there_and_back(design: Design) -> None:
+    assert design_of(content_of(design)) == design
+
+
+def test_every_dimension_has_its_place(design: Design) -> None:
+    content, kind = content_of(design), design.linkage.kind
+    for each in dimensions():
+        if kind in each["kinds"]:
+            value = content[each["owner"]][each["symbol"]]
+            value = value if each["part"] is None else value[each["part"]]
+            assert value == pytest.approx(component(design, each["name"]), rel=1e-15)
+            assert each["low"] <= value * each["factor"] <= each["high"], each["name"]
+
+
+def test_a_gear_ratio_within_its_bounds_can_be_run() -> None:
+    bounds = next(each for each in dimensions() if each["name"] == "gear_ratio")
+    content = content_of(fes_mj.load_design("d1"))
+    for ratio, rpm in ((bounds["low"], 1), (bounds["high"], 200)):
+        content["linkage"]["gear_ratio"] = ratio
+        assert design_of(content).linkage.cadence * 30 / 3.141592653589793 == pytest.approx(rpm)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"R2": 5}, r"d1: linkage.R2 is 5; it must be a length in metres from 0.001 to 2"),
+        ({"R1": 3}, r"d1: linkage.R1 is 3; it must be \[x, y\]"),
+        ({"R3": 1}, r"d1: unknown key linkage.R3"),
+        ({"kind": "bicycle"}, r"d1: linkage.kind is 'bicycle'"),
+    ],
+)
+def test_refusals_are_those_of_design_files(change: dict[str, object], message: str) -> None:
+    content = content_of(fes_mj.load_design("d1"))
+    content["linkage"] |= change
+    with pytest.raises(InputError, match=message):
+        design_of(content)
+
+
+@pytest.mark.parametrize("content", [None, [], {}, {"name": 3}])
+def test_what_is_no_design(content: object) -> None:
+    with pytest.raises(InputError):
+        design_of(content)

@@ -1,0 +1,101 @@
+"""Curves and numbers of the page are those of the solvers that it shows, and they come at once."""
+
+import time
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import fes_mj
+from fes_mj.design import Design
+from fes_mj.explore.answers import Answers
+from fes_mj.explore.dimensions import content_of
+from fes_mj.explore.server import as_json
+from fes_mj.explore.turn import DIGITS, POINTS, turn
+from fes_mj.fourier import fourier
+from fes_mj.statics import quasi_static
+from fes_mj.variables import replaced
+
+ROUNDED = 0.5001 * 10.0**-DIGITS
+GROUPS = {name: fes_mj.load_moments(name) for name in ("p1p2", "p1p3")}
+
+
+def text_of(numbers: list[dict[str, str]], name: str) -> str:
+    return next(each["text"] for each in numbers if each["name"] == name)
+
+
+@pytest.mark.parametrize("group", GROUPS)
+def test_power_is_that_of_statics(design: Design, group: str) -> None:
+    shown = turn(design, GROUPS)["moments"][group]
+    static = quasi_static(design, GROUPS[group], points=POINTS)
+    np.testing.assert_allclose(shown["static"], static.power, atol=ROUNDED)
+    assert text_of(shown["numbers"], "power") == f"{static.power_mean:.2f} ± {static.power_sd:.2f}"
+    # ten times fewer angles than `fes_mj static` has: the trapezium rule of a curve with jumps
+    assert static.power_mean == pytest.approx(quasi_static(design, GROUPS[group]).power_mean, rel=2e-4)
+
+
+def test_masses_move_power_about_but_make_none(design: Design) -> None:
+    shown = turn(design, GROUPS)["moments"]["p1p2"]
+    assert np.mean(shown["masses"]) == pytest.approx(np.mean(shown["static"]), abs=2 * ROUNDED)
+    assert np.ptp(shown["masses"] - shown["static"]) > 1
+
+
+@pytest.mark.long
+def test_the_band_is_that_of_many_curves() -> None:
+    """Power under moments drawn from their covariance scatters as much as the band says, at every angle."""
+    design, moments = fes_mj.load_design("d1"), GROUPS["p1p2"]
+    generator, count = np.random.default_rng(7), 400
+    mean = np.concatenate([*moments.coefficients])
+    angle = np.radians(np.arange(0.0, 360.0, 2.0))
+    powers = []
+    for row in generator.multivariate_normal(mean, moments.covariance, count, method="eigh"):
+        knee, hip = (fourier(angle) @ part for part in np.split(row, 2))
+        drawn = replace(moments, crank_angle=angle, knee=knee, hip=hip)
+        powers.append(quasi_static(design, drawn, points=POINTS).power)
+    scatter = np.std(powers, axis=0)
+    sd = turn(design, GROUPS)["moments"]["p1p2"]["sd"]
+    # a standard deviation from so many samples is itself unsure by 1 / sqrt(2 n) of it; five times that
+    np.testing.assert_allclose(scatter, sd, rtol=5 / np.sqrt(2 * count), atol=0.02)
+
+
+def test_two_legs_are_half_a_turn_apart() -> None:
+    one, two = (turn(fes_mj.load_design("d1"), GROUPS, legs)["moments"]["p1p2"] for legs in (1, 2))
+    for curve in ("static", "masses"):
+        total = one[curve] + np.roll(one[curve], POINTS // 2)
+        np.testing.assert_allclose(two[curve], total, atol=3 * ROUNDED)
+    assert np.all(two["sd"] <= one["sd"] + np.roll(one["sd"], POINTS // 2) + 2 * ROUNDED)
+    assert one["numbers"] == two["numbers"]  # of one leg
+
+
+def test_a_linkage_that_does_not_turn_says_why_and_is_still_drawn() -> None:
+    answer = turn(replaced(fes_mj.load_design("d1"), {"R2": 0.25}), GROUPS)
+    assert "rocker and coupler cannot close at crank angle" in answer["error"]
+    assert f"{answer['failing_deg']:.1f} deg" in answer["error"]
+    assert answer["bodies"]
+    assert "moments" not in answer
+
+
+def test_a_joint_that_never_has_moments_says_so() -> None:
+    answer = turn(replaced(fes_mj.load_design("d1"), {"seat_angle": -80.0}), GROUPS)
+    assert "it never comes into that range" in answer["error"]
+    assert answer["failing_deg"] is None
+
+
+def test_outside_the_moments_range_is_marked() -> None:
+    shown = turn(replaced(fes_mj.load_design("d1"), {"seat_angle": 25.0}), GROUPS)
+    under = shown["moments"]["p1p2"]
+    outside = shown["joints"]["hip"] > under["range_deg"]["hip"][1] + 0.02
+    assert outside.any()
+    assert np.all(under["outside"][outside])
+    assert "no moments are known" in under["note"]
+
+
+def test_from_slider_to_new_curves(answers: Answers) -> None:
+    """In at most 100 ms, with all that is sent to the page: the processor's time, whatever else it does beside this."""
+    design, took = fes_mj.load_design("d1"), []
+    for n in range(11):
+        question = {"design": content_of(replaced(design, {"R2": 0.155 + 0.0005 * n}))}
+        start = time.thread_time()
+        as_json(answers.turn(question))
+        took.append(time.thread_time() - start)
+    assert np.median(took) <= 0.1
