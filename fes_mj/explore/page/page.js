@@ -154,10 +154,10 @@ let busy = false, again = null;
 async function refresh(dragging = false) {
   if (busy) { again = { dragging }; return; }
   busy = true;
-  const asked = snapshot();
+  const asked = snapshot(), question = { design: copy(state.design), legs: legs() };
   try {
-    await compare();
-    state.turn = await ask("turn", { design: state.design, legs: legs() });
+    await compare(question.legs);
+    state.turn = { legs: question.legs, ...(await ask("turn", question)) };
     tell("");
     show(dragging);
   } catch (error) {
@@ -171,17 +171,17 @@ async function refresh(dragging = false) {
   else document.body.dataset.updates = Number(document.body.dataset.updates || 0) + 1;
 }
 
-async function compare() {
+async function compare(legs) {
   const chosen = $("compared").value, design = chosen === AS_LOADED ? state.loaded : start.designs[chosen];
-  const key = JSON.stringify([design, legs(), start.moments]);
+  const key = JSON.stringify([design, legs, start.moments]);
   if (state.reference?.key === key) return;
-  state.reference = { key, name: chosen === AS_LOADED ? `${design.name} as loaded` : chosen, turn: await ask("turn", { design, legs: legs() }) };
+  state.reference = { key, name: chosen === AS_LOADED ? `${design.name} as loaded` : chosen, turn: await ask("turn", { design, legs }) };
 }
 
 function show(dragging) {
   const { turn } = state;
   const failing = turn.failing_deg !== null;
-  scene.show(turn, legs(), dragging);
+  scene.show(turn, turn.legs, dragging);
   $("error").hidden = !turn.error;
   $("error").textContent = turn.error || "";
   if (failing && !state.failing) {
@@ -242,7 +242,7 @@ function showPlots() {
   const levels = range ? joints.flatMap(({ name, colour }) => range[name].map((y) => ({ y, colour, dash: "2 3" }))) : [];
   jointsPlot.show({ curves: joints.filter((curve) => !state.hidden.has(curve.name)), levels });
   entries.joints = legend($("joints-legend"), joints, "°", range ? [{ name: "range of the moments", dash: "2 3", colour: start.colours.reference, width: 1.2 }] : []);
-  $("of-legs").textContent = legs() === 2 ? "(both legs; band: one standard deviation)" : "(one leg; band: one standard deviation)";
+  $("of-legs").textContent = turn.legs === 2 ? "(both legs; band: one standard deviation)" : "(one leg; band: one standard deviation)";
 }
 
 function legend(box, curves, unit, fixed = []) {
