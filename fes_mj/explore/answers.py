@@ -9,7 +9,7 @@ from fes_mj.design import LEGS, Design
 from fes_mj.design_file import DESIGNS, design_toml, load_design
 from fes_mj.errors import InputError
 from fes_mj.explore.dimensions import content_of, design_of, dimensions
-from fes_mj.explore.runs import simulated
+from fes_mj.explore.runs import ridden, simulated
 from fes_mj.explore.turn import turn
 from fes_mj.moments import GROUPS, JointMoments
 from fes_mj.moments_file import load_moments
@@ -37,6 +37,7 @@ class Answers:
             "save": self.save,
             "model": self.model,
             "simulate": self.simulate,
+            "ride": self.ride,
             "open-design": self.open_design,
             "open-moments": self.open_moments,
         }
@@ -71,6 +72,10 @@ class Answers:
     def simulate(self, question: dict[str, Any]) -> dict[str, Any]:
         """A run in MuJoCo beside statics. Raises UnstableError too."""
         return simulated(design_of(question.get("design")), self._moments(question), _legs(question))
+
+    def ride(self, question: dict[str, Any]) -> dict[str, Any]:
+        """A ride on the flat by two solvers, which takes a while. Raises UnstableError too."""
+        return ridden(design_of(question.get("design")), self._moments(question))
 
     def open_design(self, question: dict[str, Any]) -> dict[str, Any]:
         """A design file's design."""

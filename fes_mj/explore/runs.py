@@ -1,26 +1,44 @@
 """The real thing behind a button of the page: MuJoCo beside the project's own solvers, and what came out."""
 
+from collections.abc import Sequence
 from typing import Any
 
+from fes_mj.checks import Check
 from fes_mj.console import number
 from fes_mj.crosscheck import Case
 from fes_mj.design import Design
 from fes_mj.moments import JointMoments
+from fes_mj.ride import Ride
+from fes_mj.ride_case import RideCase
+from fes_mj.text import typeset
+from fes_mj.torque_velocity import load_torque_velocity
+from fes_mj.units import KMH
 
 
-def simulated(design: Design, moments: JointMoments, legs: int = 1) -> dict[str, Any]:
+def simulated(design: Design, moments: JointMoments, legs: int) -> dict[str, Any]:
     """As `fes_mj simulate`: the verdict in a sentence, and every check. Raises what Case raises."""
     case = Case(design, moments, legs=legs)
-    power = f"mean power {case.simulation.power_mean:.2f} W against {case.static_power_mean:.2f} W"
-    verdict = f"Dynamic and static agree: {power}, {case.difference_text}."
-    if not case.agrees:
-        failed = ", ".join(each.name for each in case.checks if not each.ok)
-        verdict = f"Dynamic and static do not agree: {failed}; {power}."
-    return {"agrees": case.agrees, "verdict": verdict, "checks": _rows(case.checks)}
+    power = (
+        f"mean power {case.simulation.power_mean:.2f} W against {case.static_power_mean:.2f} W, {case.difference_text}"
+    )
+    return _outcome("Dynamic and static", power, case.checks)
 
 
-def _rows(checks: Any) -> list[dict[str, Any]]:
-    return [
+def ridden(design: Design, moments: JointMoments) -> dict[str, Any]:
+    """As `fes_mj ride` on the flat, in the same form. Raises what RideCase raises."""
+    case = RideCase(Ride(design, moments.at_speed(load_torque_velocity("hill"))))
+    trace = case.simulation.trace
+    result = f"it stops after {trace.stopped_at:.1f} s" if trace.stopped_at is not None else "it rides"
+    if trace.mean_speed is not None:
+        result += f", {trace.mean_speed / KMH:.2f} km/h at the end"
+    return _outcome("The two solvers", result, case.checks)
+
+
+def _outcome(who: str, result: str, checks: Sequence[Check]) -> dict[str, Any]:
+    """Of checks that hold together or not; the page shows `verdict` and a table."""
+    failed = ", ".join(each.name for each in checks if not each.ok)
+    verdict = f"{who} do not agree ({failed}): {result}." if failed else f"{who} agree: {result}."
+    rows = [
         {
             "name": each.name.replace("_", " "),
             "value": number(each.value, each.unit),
@@ -29,3 +47,4 @@ def _rows(checks: Any) -> list[dict[str, Any]]:
         }
         for each in checks
     ]
+    return {"agrees": not failed, "verdict": typeset(verdict), "checks": rows}

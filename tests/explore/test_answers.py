@@ -1,15 +1,21 @@
 """What the page can ask besides a turn: files in and out, runs."""
 
+from functools import partial
 from typing import Any
 
 import mujoco
 import pytest
 
 import fes_mj
+from fes_mj.checks import Check
 from fes_mj.errors import AssemblyError, InputError
 from fes_mj.explore.answers import Answers
 from fes_mj.explore.dimensions import content_of, design_of
 from fes_mj.moments_file import moments_csv
+from fes_mj.ride import Ride
+from fes_mj.ride_case import RideCase
+from fes_mj.torque_velocity import load_torque_velocity
+from fes_mj.units import KMH
 from fes_mj.variables import replaced
 
 D1 = content_of(fes_mj.load_design("d1"))
@@ -66,6 +72,24 @@ def test_simulate_says_what_the_command_says(answers: Answers) -> None:
     assert run["agrees"]
     assert f"mean power {case.simulation.power_mean:.2f} W" in run["verdict"]
     assert [each["ok"] for each in run["checks"]] == [each.ok for each in case.checks]
+
+
+def test_ride_says_what_the_command_says(answers: Answers, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("fes_mj.explore.runs.Ride", partial(Ride, duration=4.0))
+    moments = fes_mj.load_moments().at_speed(load_torque_velocity("hill"))
+    case = RideCase(Ride(fes_mj.load_design("d1"), moments, duration=4.0))
+    run = answers.ride({"design": D1, "moments": "p1p2"})
+    assert run["agrees"] == case.agrees
+    speed = case.simulation.trace.mean_speed
+    assert speed is None or f"{speed / KMH:.2f} km/h at the end" in run["verdict"]
+    assert [each["ok"] for each in run["checks"]] == [each.ok for each in case.checks]
+
+
+def test_a_check_that_fails_is_named(answers: Answers, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("fes_mj.crosscheck.check", lambda name, value, _: Check(name, value, limit=0.0))
+    run = answers.simulate({"design": D1, "moments": "p1p2"})
+    assert not run["agrees"]
+    assert run["verdict"].startswith("Dynamic and static do not agree (mean_power")
 
 
 @pytest.mark.parametrize(
