@@ -23,6 +23,14 @@ def take(design: Design, rows: Any) -> Design:
     return design.changed(**changes)
 
 
+def single(design: Design, row: int) -> Design:
+    """One design of a batch, with plain numbers."""
+    changes: dict[str, dict[str, Any]] = {"linkage": {}, "rider": {}}
+    for owner, name, value in _arrays(design):
+        changes[owner][name] = value[row, 0].item()
+    return design.changed(**changes)
+
+
 def _arrays(design: Design) -> Iterator[tuple[str, str, NDArray[Any]]]:
     for owner in ("linkage", "rider"):
         part = getattr(design, owner)

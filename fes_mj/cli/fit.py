@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
 
-from fes_mj.cli.fit_options import RiderOptions, SeatOptions
+from fes_mj.cli.fit_options import RiderOptions, SeatOptions, sample_size
 from fes_mj.cli.options import MomentsOptions, PrintOptions, crank_speed
 from fes_mj.cli.static import print_notes, span, with_error
 from fes_mj.console import conclude, print_table, progress_bar, say
@@ -26,8 +26,6 @@ if TYPE_CHECKING:
     from fes_mj.moments import JointMoments
 
 _PRINT, _MOMENTS, _RIDER, _SEAT = PrintOptions(), MomentsOptions(), RiderOptions(), SeatOptions()
-FEWEST, MOST = 10, 100_000  # people in a sample
-SAMPLES = 1000
 
 
 def fit(
@@ -141,9 +139,7 @@ def _population(
     inputs: list[Path],
 ) -> int:
     """Sample people, and print or draw who can ride."""
-    size, seed = SAMPLES if samples is None else samples, seed or 0
-    if not FEWEST <= size <= MOST:
-        raise InputError(f"--samples is {size}; it must be from {FEWEST} to {MOST:,} people of each sex")
+    size, seed = sample_size(samples), seed or 0
     if seed < 0:
         raise InputError(f"--seed is {seed}; it must not be negative")
     if plot:

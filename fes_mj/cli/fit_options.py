@@ -14,7 +14,16 @@ from fes_mj.riders import Population, populations
 from fes_mj.variables import VARIABLES
 
 _Range = Annotated[tuple[float, float], Parameter(negative="")]
+FEWEST, MOST, SAMPLES = 10, 100_000, 1000  # people of each sex in a sample
 _FARTHEST = {"forward": (1.0, "m"), "up": (1.0, "m"), "recline": (90.0, "deg")}
+
+
+def sample_size(samples: int | None) -> int:
+    """People of each sex. Raises InputError for a sample that says nothing, or takes too long."""
+    size = SAMPLES if samples is None else samples
+    if not FEWEST <= size <= MOST:
+        raise InputError(f"--samples is {size}; it must be from {FEWEST} to {MOST:,} people of each sex")
+    return size
 
 
 @Parameter(name="*")

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from fes_mj.optimization.winner import Winner
 
 _DEFAULTS = SearchOptions()
+_RIDER_COLUMNS = ("thigh, m", "shank, m", "seat towards the crank, m", "seat up, m", "seat angle, deg", "power, W")
 
 
 def optimize(
@@ -174,6 +175,11 @@ def _print(winner: Winner, outcome: Outcome) -> None:
     title = f"{design.name}: {design.linkage.architecture.title}; {winner.case.moments.name}"
     print_table(f"{title}; {outcome.method}, {outcome.evaluations:,} evaluations", ("", "value"), winner.rows)
     print_table("Constraints", ("constraint", "value", "limit", ""), outcome.limit_rows)
+    people = outcome.problem.people
+    if people.count > 1:
+        rows = [tuple(f"{value:.3f}" for value in rider.values()) for rider in outcome.riders]
+        power = outcome.problem.evaluate(outcome.x[None]).power[0, 0]
+        print_table(f"{people.statistic}: {power:.2f} W; by these riders", _RIDER_COLUMNS, rows)
     if front:
         keep = np.unique(np.linspace(0, len(front.x) - 1, 12).astype(int))
         cells = [(f"{number}", *(f"{power:.2f}" for power in front.power[number])) for number in keep]

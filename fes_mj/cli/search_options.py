@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
 
+from fes_mj.cli.fit_options import sample_size
 from fes_mj.cli.options import MomentsOptions, PrintOptions
 from fes_mj.errors import InputError, require_extra
 from fes_mj.moments import JointMoments
@@ -48,6 +49,13 @@ class SearchOptions(PrintOptions, MomentsOptions):
         Largest mean absolute hip speed in deg/s instead (69.1 in the TRT).
     caution
         Take so many standard deviations of the gain off it: finds designs that win for sure (not with --moments).
+    riders
+        For whom: the design's own rider, or people from percentiles, each with the seat moved within the limits of
+        `fes_mj fit`: most power in the mean over the sample (population), or for 9 of 10 (population-p10).
+    samples
+        With --riders population: people of each sex (default 1000).
+    sample_seed
+        With --riders population: of the sample's random numbers (default 0).
     smooth
         With nsga-ii: also the least coefficient of fluctuation.
     problem
@@ -67,6 +75,9 @@ class SearchOptions(PrintOptions, MomentsOptions):
     knee_speed_limit: float | None = None
     hip_speed_limit: float | None = None
     caution: float = 0.0
+    riders: Literal["one", "population", "population-p10"] = "one"
+    samples: int | None = None
+    sample_seed: int | None = None
     smooth: Annotated[bool, Parameter(negative="")] = False
     problem: Path | None = None
     jobs: int = 1
@@ -86,17 +97,30 @@ class SearchOptions(PrintOptions, MomentsOptions):
             raise InputError(
                 "--caution needs the error bars of one group's recovered moments: not with --moments or nsga-ii"
             )
+        self._check_people()
         if self.method in _PACKAGES:
             require_extra("optimize", _PACKAGES[self.method])
         if self.smooth and self.method != "nsga-ii":
             raise InputError("--smooth is an objective of its own: it needs --method nsga-ii")
 
+    def _check_people(self) -> None:
+        if self.riders == "one":
+            for name, value in {"--samples": self.samples, "--sample-seed": self.sample_seed}.items():
+                if value is not None:
+                    raise InputError(f"{name} is of a population; it needs --riders population")
+            return
+        sample_size(self.samples)
+        if self.sample_seed is not None and self.sample_seed < 0:
+            raise InputError(f"--sample-seed is {self.sample_seed}; it must not be negative")
+        if self.caution or self.method == "nsga-ii":
+            raise InputError(f"--riders {self.riders} is an objective of its own: not with --caution or nsga-ii")
+
     def load_problem(self, kind: str, moments: JointMoments) -> Problem:
         """The problem that the options describe."""
-        from fes_mj.optimization.problem import make_problem
+        from fes_mj.optimization.problem import for_people, make_problem
         from fes_mj.optimization.problem_file import DEFAULT
 
-        return make_problem(
+        problem = make_problem(
             kind,
             moments,
             compared_with=self.speeds_of,
@@ -106,6 +130,9 @@ class SearchOptions(PrintOptions, MomentsOptions):
             hip_speed=self.hip_speed_limit,
             caution=self.caution,
         )
+        if self.riders == "one":
+            return problem
+        return for_people(problem, self.riders, **self._people)
 
     @property
     def inputs(self) -> list[Path]:
@@ -125,6 +152,7 @@ class SearchOptions(PrintOptions, MomentsOptions):
         spelled_out = {
             "group": None if self.moments else self.group or "p1p2",
             "budget": self.evaluations,
+            **({} if self.riders == "one" else self._people),
             **{f"{joint}_speed_limit": speed for joint, speed in problem.joint_speed.items()},
         }
         words = ["fes_mj", "optimize", kind]
@@ -136,6 +164,10 @@ class SearchOptions(PrintOptions, MomentsOptions):
             option, text = "--" + field.name.replace("_", "-"), str(value)
             words += [option] if value is True else [f"{option}={text}"] if text[:1] == "-" else [option, text]
         return " ".join(map(shell_word, words))
+
+    @property
+    def _people(self) -> dict[str, int]:
+        return {"samples": sample_size(self.samples), "sample_seed": self.sample_seed or 0}
 
     def recipe(self, kind: str, problem: Problem) -> dict[str, Any]:
         """What the outcome depends on beside the problem: the command and the versions of what carries it out."""

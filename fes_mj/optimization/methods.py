@@ -1,6 +1,6 @@
 """The single-objective methods: two evolutionary ones from libraries, and the paper's own.
 
-The evolutionary ones vary the nine lengths; the gear ratio follows from the joint speeds.
+The evolutionary ones vary all but the gear ratio, which follows from the joint speeds.
 """
 
 from collections.abc import Callable
@@ -12,7 +12,6 @@ from scipy.optimize import differential_evolution
 from fes_mj.arrays import FloatArray
 from fes_mj.errors import require_extra
 from fes_mj.optimization.search import BudgetSpentError, Search, feasible_start
-from fes_mj.variables import LENGTHS
 
 Start: TypeAlias = FloatArray | None
 POPULATION = 7  # per variable
@@ -26,12 +25,12 @@ _SMALLEST_BLOCK, _LARGEST_BLOCK = 16, 2048
 
 def differential(search: Search, start: Start, random: np.random.Generator) -> None:
     """Differential evolution (scipy), started again from a new population whenever one has converged."""
-    bounds = search.problem.limits.search[: len(LENGTHS)]
+    bounds = search.problem.search[:-1]
     while True:
         differential_evolution(
             lambda x: -search(x.T),
             bounds,
-            x0=None if start is None else np.clip(start[: len(LENGTHS)], *bounds.T),
+            x0=None if start is None else np.clip(start[:-1], *bounds.T),
             popsize=POPULATION,
             maxiter=search.budget,
             tol=1e-6,
@@ -48,7 +47,7 @@ def differential(search: Search, start: Start, random: np.random.Generator) -> N
 def cma_es(search: Search, start: Start, random: np.random.Generator) -> None:
     """CMA-ES (pycma), started again with a doubled population whenever it has converged."""
     cma = require_extra("optimize", "cma")
-    low, high = search.problem.limits.search[: len(LENGTHS)].T
+    low, high = search.problem.search[:-1].T
     population = CMA_POPULATION
     while True:
         x0 = feasible_start(search, random) if start is None else start
@@ -59,9 +58,7 @@ def cma_es(search: Search, start: Start, random: np.random.Generator) -> None:
             "verbose": -9,
             "tolfun": 1e-6,
         }
-        strategy = cma.CMAEvolutionStrategy(
-            np.clip((x0[: len(LENGTHS)] - low) / (high - low), 0, 1), CMA_SIGMA, options
-        )
+        strategy = cma.CMAEvolutionStrategy(np.clip((x0[:-1] - low) / (high - low), 0, 1), CMA_SIGMA, options)
         while not strategy.stop():
             trials = np.array(strategy.ask())
             strategy.tell(trials, -search(low + trials * (high - low)))

@@ -1,5 +1,6 @@
 """The outcome of a search: the best design, its constraints, the whole front where there is one; as JSON and text."""
 
+import math
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
@@ -7,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from fes_mj.arrays import FloatArray
-from fes_mj.cycles import WorkTable
+from fes_mj.cycles import WorkTable, cycles
 from fes_mj.moments import GROUPS
 from fes_mj.moments_file import load_moments
 from fes_mj.optimization.findings import Findings
@@ -18,7 +19,7 @@ from fes_mj.optimization.winner import Winner
 
 @dataclass(frozen=True)
 class Outcome:
-    """x: the ten variables of the best design, shape (10,). evaluations: of all searches together."""
+    """x: variables of the best design, shape (variables,). evaluations: of all searches together."""
 
     problem: Problem
     method: str
@@ -51,7 +52,25 @@ class Outcome:
             "tolerance_rider": winner.rider._asdict(),
             "design_space": problem.limits.space,
         }
+        if problem.people.count > 1:
+            content |= {"power_people_W": float(evaluation.power[0, 0]), "riders": self.riders}
         return content | ({"front": self.front.as_json()} if self.front else {})
+
+    @property
+    def riders(self) -> list[dict[str, float]]:
+        """Whom the design was made for, the rider of its file first: legs and seat, and the power in it."""
+        designs = self.problem.riders(self.x)
+        return [
+            {
+                "thigh": each.rider.thigh,
+                "shank": each.rider.shank,
+                "forward_m": (each.linkage.ground - designs[0].linkage.ground).real,
+                "up_m": (designs[0].linkage.ground - each.linkage.ground).imag,
+                "seat_angle_deg": math.degrees(each.linkage.seat_angle),
+                "power_mean_W": float(cycles(each, self.problem.table).work[0, 0]) * each.linkage.cadence / (2 * np.pi),
+            }
+            for each in designs
+        ]
 
     @property
     def limit_rows(self) -> list[tuple[str, str, str, str]]:

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from fes_mj.arrays import BoolArray, FloatArray
-from fes_mj.batch import take
+from fes_mj.batch import single, take
 from fes_mj.cycles import TURN_POINTS, Cycles, WorkTable, cycles, joint_speeds, uncertain_table
 from fes_mj.design import Design
 from fes_mj.design_file import load_design
@@ -16,6 +16,7 @@ from fes_mj.errors import InputError
 from fes_mj.geometry import LEAST_CLEARANCE, grashof_margin
 from fes_mj.joints import JOINTS, PerJoint
 from fes_mj.moments import JointMoments
+from fes_mj.optimization.people import ONE_RIDER, People, sampled
 from fes_mj.optimization.problem_file import DEFAULT, VARIED, Limits, depth_inside, load_limits
 from fes_mj.reference_tricycle import ReferenceTricycle
 from fes_mj.units import RPM
@@ -47,9 +48,9 @@ class Constraint(NamedTuple):
 class Evaluation:
     """A population evaluated.
 
-    x: shape (n, 10), gear ratios filled in. power: mean crank power of one leg, W, shape (n, sets of moments).
-    values: of each constraint, shape (n, constraints), NaN where a design was refused before it was computed.
-    margins: the same against their limits.
+    x: shape (n, variables), gear ratios filled in. power: mean crank power of one leg, W, shape (n, sets of moments);
+    of several riders their statistic. values: of each constraint, shape (n, constraints), NaN where a design was
+    refused before it was computed; of several riders the worst. margins: the same against their limits.
     """
 
     x: FloatArray
@@ -80,7 +81,8 @@ class Problem:
     template: kind, rider, seat and coupler angle of all designs. table: the sets of moments; the first is the one whose
     power counts. joint_speed: largest mean absolute speed of each joint, deg/s. caution: with moments as of
     cycles.uncertain_table, how many standard deviations of the gain over `baseline` (power of a design to beat,
-    shape (sets,)) are taken off it.
+    shape (sets,)) are taken off it. people: who else rides it; the limits on joints and their speeds hold for each, and
+    the power is the people's.
     """
 
     template: Design
@@ -89,12 +91,19 @@ class Problem:
     joint_speed: PerJoint[float]
     caution: float = 0.0
     baseline: FloatArray | float = 0.0
+    people: People = ONE_RIDER
     points: int = TURN_POINTS
 
     def __post_init__(self) -> None:
         for joint, speed in self.joint_speed.items():
             if not 0 < speed < math.inf:
                 raise InputError(f"the {joint} speed limit is {speed:g} deg/s; it must be above 0")
+
+    @property
+    def search(self) -> FloatArray:
+        """Search ranges of the variables x: lengths, moves of the people's seats, gear ratio; shape (variables, 2)."""
+        own = self.limits.search
+        return np.vstack([own[:-1], self.people.search, own[-1:]])
 
     @property
     def geometry(self) -> tuple[Constraint, ...]:
@@ -144,45 +153,58 @@ class Problem:
     def constraints(self) -> tuple[Constraint, ...]:
         return self.geometry + self.motion
 
+    def riders(self, x: FloatArray) -> list[Design]:
+        """The designs of one design's riders, each with his seat; x: shape (variables,)."""
+        batch = self.people.seated(self.batch(x[None]), x[None, LENGTH_COUNT:-1])
+        return [single(batch, row) for row in range(self.people.count)]
+
     def variables(self, design: Design) -> FloatArray:
-        """The ten variables x = [R1, R2, R6, R7, R8, R9, R10, lambda] of a design, shape (10,), m and 1."""
-        return np.array([component(design, name) for name in VARIED])
+        """The variables x = [R1, R2, R6, R7, R8, R9, R10, lambda] of a design, m and 1; before lambda no seat's moves.
+
+        Shape (variables,): ten for one rider.
+        """
+        values = np.array([component(design, name) for name in VARIED])
+        return np.insert(values, LENGTH_COUNT, np.zeros(len(self.people.search)))
 
     def batch(self, x: FloatArray) -> Design:
-        """The designs of a population, shape (n, 9) or (n, 10), as a batch."""
-        if x.shape[1] == LENGTH_COUNT:
-            x = np.column_stack([x, np.ones(len(x))])
-        return replaced(self.template, dict(zip(VARIED, x.T[..., None], strict=True)))
+        """The designs of a population, shape (n, variables) or without gear ratios, as a batch."""
+        gear_ratio = x[:, -1] if x.shape[1] == len(self.search) else np.ones(len(x))
+        values = np.column_stack([x[:, :LENGTH_COUNT], gear_ratio])
+        return replaced(self.template, dict(zip(VARIED, values.T[..., None], strict=True)))
 
     def design(self, x: FloatArray, name: str) -> Design:
-        """One design from its ten variables, shape (10,)."""
-        return replace(replaced(self.template, dict(zip(VARIED, x.tolist(), strict=True))), name=name)
+        """One design, with the template's rider, from its variables, shape (variables,)."""
+        values = [*x[:LENGTH_COUNT].tolist(), float(x[-1])]
+        return replace(replaced(self.template, dict(zip(VARIED, values, strict=True))), name=name)
 
     def evaluate(self, x: FloatArray) -> Evaluation:
-        """Power and constraints of a population, shape (n, 10).
+        """Power and constraints of a population, shape (n, variables).
 
-        With shape (n, 9) each design gets the largest gear ratio its joint speeds allow: power is proportional to it.
+        Without gear ratios each design gets the largest that its joint speeds allow: power is proportional to it.
         Designs whose lengths already violate a constraint are not turned.
         """
-        design = self.batch(x)
+        design, free = self.batch(x), x[:, : len(self.search) - 1]
         lengths = self.length_values(design, x[:, :LENGTH_COUNT])
         sound = np.all(_margins(self.geometry, lengths) >= 0, axis=1)
-        turn = cycles(take(design, sound), self.table, self.points) if sound.any() else None
         motion = np.full((len(x), len(self.motion)), np.nan)
         power = np.full((len(x), self.table.sets), np.nan)
-        gear_ratio = x[:, LENGTH_COUNT].copy() if x.shape[1] > LENGTH_COUNT else np.full(len(x), self.gear_ratios[1])
-        if turn:
+        chosen = free.shape == x.shape
+        gear_ratio = np.full(len(x), self.gear_ratios[1]) if chosen else x[:, -1].copy()
+        if sound.any():
+            turn = cycles(self.people.seated(take(design, sound), free[sound, LENGTH_COUNT:]), self.table, self.points)
             # cadence and joint speeds are those at gear ratio 1
-            cadence = self._cadence_of_one
+            cadence, riders = self._cadence_of_one, self.people.count
             speeds = turn.travel.map(lambda travel: np.degrees(travel) * cadence / (2 * np.pi))
-            if x.shape[1] == LENGTH_COUNT:
+            if chosen:
                 fastest = np.minimum(*(self.joint_speed[joint] / speeds[joint] for joint in JOINTS))
-                gear_ratio[sound] = np.fmin(fastest * (1 - _HAIR), self.gear_ratios[1])
-            power[sound] = turn.work * (cadence / (2 * np.pi) * gear_ratio[sound, None])
-            motion[sound] = _motion_values(turn, self.table.measured_on, speeds, gear_ratio[sound])
+                for_all = fastest.reshape(-1, riders).min(axis=1)
+                gear_ratio[sound] = np.fmin(for_all * (1 - _HAIR), self.gear_ratios[1])
+            ratios = np.repeat(gear_ratio[sound], riders)
+            power[sound] = self.people.power(turn.work * (cadence / (2 * np.pi) * ratios[:, None]))
+            motion[sound] = self._worst(_motion_values(turn, self.table.measured_on, speeds, ratios))
         values = np.hstack([lengths, motion])
         scales = np.array([constraint.scale for constraint in self.constraints])
-        filled = np.column_stack([x[:, :LENGTH_COUNT], gear_ratio])
+        filled = np.column_stack([free, gear_ratio])
         return Evaluation(filled, power, values, _margins(self.constraints, values), scales)
 
     def merit(self, evaluation: Evaluation) -> FloatArray:
@@ -201,6 +223,11 @@ class Problem:
             for c, value, margin in zip(self.constraints, evaluation.values[row], evaluation.margins[row], strict=True)
             if margin < 0
         ]
+
+    def _worst(self, values: FloatArray) -> FloatArray:
+        """Of each constraint on the turn over all riders, shape (n, constraints); values: (n * riders, constraints)."""
+        each = values.reshape(-1, self.people.count, values.shape[1])
+        return np.asarray(np.where([c.at_least for c in self.motion], each.min(axis=1), each.max(axis=1)))
 
     def length_values(self, design: Design, x: FloatArray) -> FloatArray:
         """Values of the constraints of `geometry`, shape (n, 8); x: the lengths, shape (n, 9)."""
@@ -242,6 +269,12 @@ def _overlap(joint: str, turn: Cycles, reference: ReferenceTricycle) -> FloatArr
 
 def _margins(constraints: tuple[Constraint, ...], values: FloatArray) -> FloatArray:
     return np.column_stack([c.margin(values[:, column]) for column, c in enumerate(constraints)])
+
+
+def for_people(problem: Problem, statistic: str, samples: int, sample_seed: int) -> Problem:
+    """The same problem for a sample of people (see people.sampled) instead of the template's rider."""
+    rider, people = sampled(statistic, samples, sample_seed)
+    return replace(problem, template=replace(problem.template, rider=rider), people=people)
 
 
 def make_problem(

@@ -8,10 +8,9 @@ import numpy as np
 
 from fes_mj.arrays import FloatArray
 from fes_mj.errors import InputError
-from fes_mj.optimization.problem import INFEASIBLE, Problem
-from fes_mj.optimization.problem_file import VARIED
+from fes_mj.optimization.problem import INFEASIBLE, LENGTH_COUNT, Problem
 
-Improved: TypeAlias = Callable[[FloatArray, float], None]  # a feasible design, shape (10,), and its merit
+Improved: TypeAlias = Callable[[FloatArray, float], None]  # a feasible design, shape (variables,), and its merit
 _SAMPLE = 2000
 
 
@@ -23,7 +22,7 @@ class BudgetSpentError(Exception):
 class Result:
     """Outcome of one search.
 
-    x: shape (10,). merit: see Problem.merit. history: evaluations and merit at each improvement, shape (k, 2).
+    x: shape (variables,). merit: see Problem.merit. history: evaluations and merit at each improvement, shape (k, 2).
     """
 
     x: FloatArray
@@ -40,12 +39,12 @@ class Search:
 
     def __init__(self, problem: Problem, budget: int, improved: Improved | None = None) -> None:
         self.problem, self.budget, self.evaluations = problem, budget, 0
-        self.best_x, self.best = np.full(len(VARIED), np.nan), -np.inf
+        self.best_x, self.best = np.full(len(problem.search), np.nan), -np.inf
         self._history: list[tuple[int, float]] = []
         self._improved = improved
 
     def __call__(self, x: FloatArray) -> FloatArray:
-        """Merit of each row of x, shape (n, 9) or (n, 10); see Problem.evaluate."""
+        """Merit of each row of x, shape (n, variables) or without gear ratios; see Problem.evaluate."""
         rest = self.budget - self.evaluations
         if rest <= 0:
             raise BudgetSpentError
@@ -57,7 +56,7 @@ class Search:
         return merit
 
     def note(self, x: FloatArray, merit: FloatArray) -> None:
-        """Count evaluations made elsewhere; x of shape (n, 10) in the order they were made."""
+        """Count evaluations made elsewhere; x of shape (n, variables) in the order they were made."""
         top = int(np.argmax(merit))
         if merit[top] > self.best:
             self.best, self.best_x = float(merit[top]), x[top].copy()
@@ -79,13 +78,14 @@ class Search:
 
 
 def feasible_start(search: Search, random: np.random.Generator) -> FloatArray:
-    """A random feasible design, ten variables, from the search ranges; every design tried until then is counted.
+    """A random feasible design, all its variables, from the search ranges; every design tried until then is counted.
 
     Raises BudgetSpentError if none turns up within the budget.
     """
-    low, high = search.problem.limits.search.T
+    low, high = search.problem.search.T
     while search.evaluations < search.budget:
         x = random.uniform(low, high, (min(_SAMPLE, search.budget - search.evaluations), len(low)))
+        x[:, LENGTH_COUNT:-1] = 0.0  # of people, whom seats suit in which all their legs are equally stretched
         evaluation = search.problem.evaluate(x)
         found = evaluation.feasible.any()
         used = int(np.argmax(evaluation.feasible)) + 1 if found else len(x)
@@ -96,14 +96,14 @@ def feasible_start(search: Search, random: np.random.Generator) -> FloatArray:
 
 
 def require_feasible(problem: Problem, x: FloatArray, name: str) -> None:
-    """Raise InputError naming the violated constraints if a start, shape (10,), is not feasible."""
+    """Raise InputError naming the violated constraints if a start, shape (variables,), is not feasible."""
     broken = violations_text(problem, x)
     if broken is not None:
         raise InputError(f"the start {name} is not feasible: {broken}")
 
 
 def violations_text(problem: Problem, x: FloatArray) -> str | None:
-    """Which constraints a design, shape (10,), violates and by how much; None if it is feasible."""
+    """Which constraints a design, shape (variables,), violates and by how much; None if it is feasible."""
     evaluation = problem.evaluate(x[None])
     if evaluation.feasible[0]:
         return None

@@ -60,6 +60,22 @@ def test_the_default_speed_limit_is_that_of_the_trt(capsys: pytest.CaptureFixtur
     assert slower["power_mean_W"] < found["power_mean_W"]
 
 
+def test_riders_of_a_population_are_listed_with_their_seats(capsys: pytest.CaptureFixture[str]) -> None:
+    people = ["--riders", "population", "--samples", "50", "--sample-seed", "1"]
+    search = ["optimize", "crt", "--budget", "12000", "--searches", "1", *people]
+    assert run([*search, "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["feasible"]
+    own, *others = found["riders"]
+    assert own["power_mean_W"] == pytest.approx(found["power_mean_W"], rel=1e-4)
+    assert (own["forward_m"], own["up_m"]) == (0.0, 0.0)
+    assert len({rider["thigh"] for rider in others}) == len(others) > 1
+    assert min(r["power_mean_W"] for r in found["riders"]) < found["power_people_W"]
+    assert "--samples 50 --sample-seed 1" in found["command"]
+    assert run(search) == 0
+    assert "by these riders" in capsys.readouterr().out
+
+
 def test_a_front_beside_the_design(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     pytest.importorskip("pymoo")
     out = tmp_path / "front.toml"
@@ -101,6 +117,10 @@ def test_own_moments_have_no_error_bar(tmp_path: Path, capsys: pytest.CaptureFix
         (["cdt", "--out", "best.txt"], "best.txt: cannot write the design: the name must end in .toml"),
         (["cdt", "--report", "nowhere/best.html"], "the folder does not exist"),
         (["cdt", "--problem", "missing.toml"], "missing.toml: cannot read the problem"),
+        (["cdt", "--samples", "100"], "--samples is of a population; it needs --riders population"),
+        (["cdt", "--riders", "population", "--samples", "1"], "--samples is 1; it must be from 10 to 100,000"),
+        (["cdt", "--riders", "population", "--sample-seed", "-1"], "--sample-seed is -1; it must not be negative"),
+        (["cdt", "--riders", "population-p10", "--caution", "1"], "is an objective of its own: not with --caution"),
         (["cdt", "--jobs", "0"], "--jobs is 0; it must be at least 1"),
     ],
 )
@@ -128,6 +148,7 @@ def found_with(path: Path) -> list[str]:
         ["--group", "p1p3", "--speeds-of", "d2", "--start", "d2", "--caution", "1", "--knee-speed-limit", "170"],
         ["--problem", "it's a *problem*\x07.toml", "--moments", "-m.csv"],
         ["--method", "nsga-ii", "--smooth"],
+        ["--riders", "population-p10"],
     ],
 )
 def test_the_command_in_the_file_gives_the_same_bytes_again(

@@ -1,0 +1,200 @@
+"""Successors of R1 and D1 for people instead of for the paper's rider: what they look like, what they gain and lose.
+
+Writes results/optimization/: people.md, people.json and a design file for each winner. Takes some minutes.
+"""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from fes_mj.cycles import WorkTable, cycles
+from fes_mj.design import Design, Rider
+from fes_mj.design_file import design_toml, load_design
+from fes_mj.files import json_text, write_text
+from fes_mj.fit import Seats, best_seats, fit, seat_text
+from fes_mj.joints import PerJoint
+from fes_mj.moments_file import load_moments
+from fes_mj.optimization.optimize import optimize
+from fes_mj.optimization.people import sampled
+from fes_mj.optimization.problem import Problem, for_people
+from fes_mj.optimization.problem_file import DEFAULT, load_limits
+from fes_mj.optimization.winner import Winner, assess
+from fes_mj.parallel import Workers
+from fes_mj.population import study_population
+from fes_mj.provenance import provenance
+from fes_mj.table import Table
+from fes_mj.variables import COMPONENTS, component
+
+FOLDER = Path("results/optimization")
+MOMENTS = load_moments("p1p2")
+TABLE = WorkTable.of(MOMENTS)
+SAMPLES, SAMPLE_SEED = 1000, 0
+SEARCHES, BUDGET, WORKERS = 3, 25_000, Workers(jobs=2)
+TARGETS = ("r1", "d1")
+STATISTICS = {"population": "the mean", "population-p10": "the 10th percentile"}
+VARIED = tuple(name for name, (variable, _) in COMPONENTS.items() if variable.owner == "linkage")
+
+
+@dataclass(frozen=True)
+class Row:
+    """A design, and what people get from it; W."""
+
+    made_for: str
+    design: Design
+    winner: Winner
+    content: dict[str, Any]
+
+
+def riders() -> tuple[np.ndarray, np.ndarray]:
+    """Thigh and shank, m, of the riders who stand for the sample."""
+    middle, people = sampled("population", SAMPLES, SAMPLE_SEED)
+    thigh, shank = np.vstack([[middle.thigh, middle.shank], people.others]).T
+    return thigh, shank
+
+
+def fitted_speeds(design: Design) -> PerJoint[np.ndarray]:
+    """Mean absolute joint speeds of these riders, each in his best seat, deg/s."""
+    thigh, shank = riders()
+    seats, _ = best_seats(design, thigh, shank, TABLE)
+    batch = design.changed({}, {"thigh": thigh[:, None], "shank": shank[:, None]})
+    turn = cycles(Seats(*(each[:, None] for each in seats)).moved(batch), TABLE)
+    return turn.travel.map(lambda travel: np.degrees(travel) * design.linkage.cadence / (2 * np.pi))
+
+
+def problem(target: str, statistic: str) -> Problem:
+    """Joint speeds at most those of the printed design, of the same people; its gear ratio; 5 mm of Grashof margin."""
+    design = load_design(target)
+    # half a degree beyond the limits, which rounding excuses in a printed design, is what `fit` would give back
+    limits = replace(load_limits(), gear_ratio_max=design.linkage.gear_ratio + 1e-9, joint_rounding_deg=0.0)
+    speeds = fitted_speeds(design).map(lambda each: float(each.max()) * (1 + 1e-9))
+    return for_people(Problem(design, TABLE, limits, speeds), statistic, SAMPLES, SAMPLE_SEED)
+
+
+def row(made_for: str, design: Design, printed: Design) -> Row:
+    """Measure a design."""
+    study = study_population(design, MOMENTS, samples=SAMPLES, seed=SAMPLE_SEED)
+    powers = np.concatenate([np.nan_to_num(each.fitted) for each in study.riders.values()])
+    paper = fit(design, Rider(), MOMENTS)
+    own = {key: value for key, value in paper.summary().items() if key.startswith("power")}
+    content = {
+        "design": design.name,
+        "made_for": made_for,
+        "power_people_mean_W": float(powers.mean()),
+        "power_people_p10_W": float(np.percentile(powers, 10)),
+        "can_ride": float(np.mean(powers > 0)),
+        "can_ride_as_drawn": float(np.mean([np.isfinite(each.unmoved).mean() for each in study.riders.values()])),
+        "power_paper_rider_fitted_W": own["power_mean_W"],
+        "power_paper_rider_drawn_W": own["power_unmoved_W"],
+        "paper_rider_seat": seat_text(paper.seat),
+        "mean_knee_speed_deg_s": float(fitted_speeds(design).knee.mean()),
+        "map_error_W": study.map_error,
+    }
+    return Row(made_for, design, assess(design, printed, MOMENTS), content)
+
+
+def rows(target: str) -> list[Row]:
+    """The printed design, its successor for the paper's rider, and those for people."""
+    printed = load_design(target)
+    found = [row("the paper's rider (printed)", printed, printed)]
+    own = FOLDER / f"{target}-caution-0.toml"
+    found.append(row("the paper's rider", load_design(own), printed))
+    for statistic, words in STATISTICS.items():
+        task = problem(target, statistic)
+        best = optimize(task, "cma-es", searches=SEARCHES, budget=BUDGET, seed=2, workers=WORKERS)
+        design = task.design(best[0].x, f"{target}-{statistic}")
+        write_text(FOLDER / f"{design.name}.toml", design_toml(design, "Found by tools/optimize_for_people.py."))
+        found.append(row(f"people, {words}", design, printed))
+        found[-1].content["power_within_speeds_W"] = [result.merit for result in best]
+        print(found[-1].content, flush=True)
+    return found
+
+
+def markdown(found: dict[str, list[Row]]) -> str:
+    """The page."""
+    every = [each for group in found.values() for each in group]
+    names = (*VARIED, "thigh", "shank")
+    dimensions = {"design": "", **dict.fromkeys(names, ".3f")}
+    parts = [
+        "# Designs for people instead of for one rider",
+        "Written by `python -m tools.optimize_for_people`; versions and inputs: people.json. A search of the kind is "
+        "`fes_mj optimize crt --riders population --method cma-es`.",
+        f"{SAMPLES} men and as many women (ANSUR II, sample seed {SAMPLE_SEED}), moments of p1p2; power of one leg at "
+        "the crank, W. Seat moved: to where `fes_mj fit` finds it for him or her; who cannot ride counts as no power. "
+        "The successors have at most the joint speeds that the printed design gives the same people, its gear ratio, "
+        "and 5 mm of Grashof margin. Made for the paper's rider: comparison.md, caution 0. Knee speed: the mean of its "
+        "absolute, of the riders who stand for the sample, seats moved.",
+        Table("What people get", COLUMNS, [_cells(each) for each in every]).markdown().strip(),
+        "## What the successors gain and lose",
+        "\n".join(line for group in found.values() for line in _gains(group)),
+        Table(
+            "Dimensions",
+            dimensions,
+            [(each.design.name, *(component(each.design, name) for name in names)) for each in every],
+            "Metres and degrees, as in design files; thigh and shank of the rider for whom the seat is drawn.",
+        )
+        .markdown()
+        .strip(),
+    ]
+    return "\n\n".join(parts) + "\n"
+
+
+COLUMNS = {
+    "design": "",
+    "made for": "",
+    "people, mean": ".2f",
+    "people, 10th percentile": ".2f",
+    "can ride, %": ".1f",
+    "seat as drawn, %": ".1f",
+    "paper's rider": ".2f",
+    "seat as drawn": ".2f",
+    "knee speed, deg/s": ".1f",
+    "own rider, statics": ".2f",
+    "simulated": ".2f",
+    "agrees": "",
+}
+
+
+def _cells(each: Row) -> tuple[Any, ...]:
+    content, case = each.content, each.winner.case
+    return (
+        each.design.name,
+        each.made_for,
+        content["power_people_mean_W"],
+        content["power_people_p10_W"],
+        100 * content["can_ride"],
+        100 * content["can_ride_as_drawn"],
+        content["power_paper_rider_fitted_W"],
+        content["power_paper_rider_drawn_W"],
+        content["mean_knee_speed_deg_s"],
+        case.static.power_mean,
+        case.simulation.power_mean,
+        "yes" if case.agrees else "NO",
+    )
+
+
+def _gains(group: list[Row]) -> list[str]:
+    keys = ("power_people_mean_W", "power_people_p10_W", "power_paper_rider_fitted_W")
+    lines = []
+    for each in group[2:]:
+        parts = []
+        for other in group[:2]:
+            mean, low, paper = (f"{each.content[key] - other.content[key]:+.2f}" for key in keys)
+            parts.append(f"against {other.design.name} {mean} W in the mean, {low} W at the 10th percentile, {paper} W")
+        lines.append(f"- {each.design.name}: {parts[0]} for the paper's rider (seat moved); {parts[1]} for that rider.")
+    return lines
+
+
+def main() -> None:
+    """Search, compare, write; after every target what is known by then."""
+    found: dict[str, list[Row]] = {}
+    for target in TARGETS:
+        found[target] = rows(target)
+        write_text(FOLDER / "people.md", markdown(found))
+        content = {"provenance": provenance([DEFAULT]), "designs": [each.content for g in found.values() for each in g]}
+        write_text(FOLDER / "people.json", json_text(content))
+
+
+if __name__ == "__main__":
+    main()
