@@ -17,7 +17,6 @@ from functools import cache, lru_cache
 from typing import Any
 
 import numpy as np
-from scipy.optimize import brentq
 
 from fes_mj.arrays import BoolArray, FloatArray
 from fes_mj.design import TWO_LEGS, Design
@@ -37,6 +36,7 @@ STEP_ANGLES, STEP_TIME = (math.radians(1.0), math.radians(2.0)), 0.008  # rad, s
 TOUCH = 1e-12  # m/s: rounding, by which a crank that has just caught up may be too fast or too slow
 HALVINGS = 30  # of a step, to find an event in it
 ROWS = 4096  # samples that are made before Python looks at them
+_BISECTIONS = 40  # of the energy: what is left of the interval is rounding
 MOST_ROWS = 2**21  # an hour of fast riding; beyond it something is wrong
 
 # Columns of the table over crank angle: of both legs together, then by leg and joint.
@@ -60,7 +60,7 @@ def leg_table(design: Design, moments: JointMoments, lag: float = 0.0) -> FloatA
     for number, leg in enumerate(TWO_LEGS):
         told = drive(design, moments.of_leg(leg.prefix), lag)
         behind = round(POINTS * leg.lag / (2 * np.pi))
-        columns[:, :RATES] += np.roll(_masses(told.motion), behind, axis=0)
+        columns[:, :RATES] += np.roll(masses(told.motion), behind, axis=0)
         for place, joint in enumerate(JOINTS, len(JOINTS) * number):
             columns[:, RATES + place] = np.roll(told.motion.joint_rate[joint], behind)
             columns[:, COMMANDS + place] = np.roll(told.command[joint], behind)
@@ -71,17 +71,17 @@ def leg_table(design: Design, moments: JointMoments, lag: float = 0.0) -> FloatA
     return table
 
 
-def _masses(motion: Motion) -> FloatArray:
-    """The columns before RATES of one leg."""
-    columns = np.zeros((POINTS, RATES))
+def masses(motion: Motion) -> FloatArray:
+    """The columns before RATES of one leg, shape (angles, RATES); of a batch (designs, angles, RATES)."""
+    columns = np.zeros((*motion.points["pedal"].value.shape, RATES))
     for body, part in inertias(motion.design).items():
         centre, (turning, change) = motion.body_point(body, part.centre), motion.rotation[body]
-        columns[:, INERTIA] += part.mass * np.abs(centre.first) ** 2 + part.moment * turning**2
+        columns[..., INERTIA] += part.mass * np.abs(centre.first) ** 2 + part.moment * turning**2
         along = (np.conj(centre.first) * centre.second).real
-        columns[:, INERTIA_RATE] += 2 * (part.mass * along + part.moment * turning * change)
-        columns[:, RECOIL] += part.mass * centre.first.real
-        columns[:, RECOIL_RATE] += part.mass * centre.second.real
-        columns[:, HEIGHT_RATE] += part.mass * centre.first.imag
+        columns[..., INERTIA_RATE] += 2 * (part.mass * along + part.moment * turning * change)
+        columns[..., RECOIL] += part.mass * centre.first.real
+        columns[..., RECOIL_RATE] += part.mass * centre.second.real
+        columns[..., HEIGHT_RATE] += part.mass * centre.first.imag
     return columns
 
 
@@ -145,27 +145,36 @@ def gained_power(trace: Trace) -> float | None:
 def steady_ripple(ride: Ride) -> float:
     """Largest less smallest crank speed per its mean, once a fixed gear rides evenly at the ride's launch speed.
 
-    Against a constant force that takes the mean power, and with moments as they are at rest, the energy at a crank
-    angle is an integral up to it: I_t(a) w^2 / 2 = E + integral of Q - V' less their mean, I_t = I - 2 c X + m c^2.
+    Against a constant force that takes the mean power, and with moments as they are at rest; see even_ripple.
     """
-    table, load, travel = leg_table(ride.design, ride.moments, ride.lag)[:-1], ride.load, ride.travel
+    table = leg_table(ride.design, ride.moments, ride.lag)[:-1]
     muscles = np.arange(MUSCLES)
-    push = (table[:, RATES + muscles] * table[:, COMMANDS + muscles]).sum(axis=1)
-    push -= GRAVITY * (math.cos(ride.road.angle) * table[:, HEIGHT_RATE] - math.sin(ride.road.angle) * table[:, RECOIL])
-    surplus = np.cumsum(push - push.mean()) * 2 * np.pi / POINTS
-    inertia = table[:, INERTIA] - 2 * travel * table[:, RECOIL] + travel**2 * load.inertia
+    drive = (table[:, RATES + muscles] * table[:, COMMANDS + muscles]).sum(axis=1)
+    return float(even_ripple(ride, drive, table))
+
+
+def even_ripple(ride: Ride, drive: FloatArray, legs: FloatArray) -> FloatArray:
+    """The ripple of steady_ripple, of a ride or of a batch of designs.
+
+    drive: virtual work of the moments of both legs, N m, over uniform crank angles of a turn, last axis. legs: the
+    columns before RATES of both. The energy at a crank angle is an integral up to it:
+    I_t(a) w^2 / 2 = E + integral of Q - V' less their mean, I_t = I - 2 c X + m c^2, and E what gives the mean speed.
+    """
+    load, travel, road = ride.load, ride.travel, ride.road.angle
+    push = drive - GRAVITY * (math.cos(road) * legs[..., HEIGHT_RATE] - math.sin(road) * legs[..., RECOIL])
+    inertia = legs[..., INERTIA] - 2 * travel * legs[..., RECOIL] + travel**2 * load.inertia
     cadence = ride.launch / travel
-
-    def speeds(energy: float) -> FloatArray:
-        return np.asarray(np.sqrt(2 * (energy + surplus) / inertia))
-
-    def too_fast(energy: float) -> float:
-        return 1 / float(np.mean(1 / speeds(energy))) - cadence  # the mean over time
-
-    low = -float(surplus.min()) * (1 + 1e-9) + 1e-12
-    high = low + float(inertia.max()) * cadence**2 + float(np.ptp(surplus))
-    found = speeds(brentq(too_fast, low, high))
-    return float(np.ptp(found)) / cadence
+    step = 2 * np.pi / push.shape[-1]
+    push = push - push.mean(axis=-1, keepdims=True)
+    surplus = (np.cumsum(push, axis=-1) - push / 2) * step  # by trapezoids, up to a constant
+    low = -surplus.min(axis=-1, keepdims=True) * (1 + 1e-9) + 1e-12
+    high = low + inertia.max(axis=-1, keepdims=True) * cadence**2 + np.ptp(surplus, axis=-1, keepdims=True)
+    for _ in range(_BISECTIONS):
+        energy = (low + high) / 2
+        speed = np.sqrt(2 * (energy + surplus) / inertia)
+        slow = np.mean(1 / speed, axis=-1, keepdims=True) * cadence > 1  # the mean over time
+        low, high = np.where(slow, energy, low), np.where(slow, high, energy)
+    return np.asarray(np.ptp(speed, axis=-1, keepdims=True) / cadence)[..., 0]
 
 
 def _as_floats(table: FloatArray) -> list[tuple[float, ...]]:

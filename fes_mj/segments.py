@@ -1,6 +1,6 @@
 """Mass, centre of mass and inertia of every moving body, each in its own frame (origin, x axis to the tip)."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -18,11 +18,14 @@ class Segment(NamedTuple):
 
 
 class Inertia(NamedTuple):
-    """Mass in kg; centre of mass in the body's frame, m, complex; moment of inertia about it (normal axis), kg m^2."""
+    """Mass in kg; centre of mass in the body's frame, m, complex; moment of inertia about it (normal axis), kg m^2.
 
-    mass: float
-    centre: complex
-    moment: float
+    Of a batch of designs arrays of shape (designs, 1).
+    """
+
+    mass: Any
+    centre: Any
+    moment: Any
 
 
 # de Leva, J. Biomech. 29 (1996) 1223-1230, Table 4 (transverse radius of gyration; foot from heel to toe tip).
@@ -65,24 +68,24 @@ def inertias(design: Design) -> dict[str, Inertia]:
     return bodies
 
 
-def foot_points(design: Design) -> tuple[complex, complex, complex]:
+def foot_points(design: Design) -> tuple[Any, Any, Any]:
     """Ankle, heel and toe tip in the shank's frame, m; the boot holds the foot at 90 deg to the shank."""
-    to_ankle = complex(np.exp(1j * design.boot_angle))
+    to_ankle = np.exp(1j * design.boot_angle)
     sole, length = -1j * to_ankle, FOOT_LENGTH[design.rider.sex]  # toes towards the pedal
     ankle = design.rider.shank * to_ankle
     heel = ankle - ANKLE_FROM_HEEL * length * sole
     return ankle, heel, heel + length * sole
 
 
-def _segment(segment: Segment, body_mass: float, length: float, start: complex, along: complex) -> Inertia:
+def _segment(segment: Segment, body_mass: Any, length: Any, start: Any, along: Any) -> Inertia:
     mass = segment.mass * body_mass
-    return Inertia(mass, complex(start + segment.centre * length * along), mass * (segment.gyration * length) ** 2)
+    return Inertia(mass, start + segment.centre * length * along, mass * (segment.gyration * length) ** 2)
 
 
-def _bar(start: complex, end: complex) -> Inertia:
+def _bar(start: Any, end: Any) -> Inertia:
     length = abs(end - start)
     mass = LINK_MASS_PER_LENGTH * length
-    return Inertia(mass, complex((start + end) / 2), mass * length**2 / 12)
+    return Inertia(mass, (start + end) / 2, mass * length**2 / 12)
 
 
 def combine(*parts: Inertia) -> Inertia:
@@ -90,4 +93,4 @@ def combine(*parts: Inertia) -> Inertia:
     mass = sum(part.mass for part in parts)
     centre = sum(part.mass * part.centre for part in parts) / mass
     moment = sum(part.moment + part.mass * abs(part.centre - centre) ** 2 for part in parts)
-    return Inertia(mass, complex(centre), float(moment))
+    return Inertia(mass, centre, moment)

@@ -24,8 +24,9 @@ from fes_mj.design import ONE_LEG, Design
 from fes_mj.design_file import load_design
 from fes_mj.files import json_text, write_text
 from fes_mj.moments_file import load_moments
-from fes_mj.optimization.problem import Problem
+from fes_mj.optimization.problem import Problem, for_people
 from fes_mj.optimization.problem_file import load_limits
+from fes_mj.optimization.ripple import RippleLimit
 from fes_mj.provenance import provenance
 from fes_mj.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.simulation.bench import joint_drives, simulate
@@ -116,10 +117,15 @@ def evaluations() -> dict[str, np.ndarray]:
     drawn = population(design, DESIGNS)
     batch = with_lengths(design, drawn[..., None])
     problem = Problem(design, table, load_limits(), joint_speeds(design, table))
+    evenly = replace(problem, ripple=RippleLimit(0.2, MOMENTS))
+    for_all = for_people(problem, "population", 1000, 0)
+    seated = np.insert(drawn[:, : DESIGNS // 4].T, [len(drawn)] * len(for_all.people.search), 0.0, axis=1)
     return rates(
         {
             f"ours, work of a turn from {TURN_POINTS} angles": (DESIGNS, lambda: cycles(batch, table)),
             "ours, with all constraints": (DESIGNS, lambda: problem.evaluate(drawn.T)),
+            "ours, with all constraints and a limit on the ripple": (DESIGNS, lambda: evenly.evaluate(drawn.T)),
+            "ours, for people": (DESIGNS // 4, lambda: for_all.evaluate(seated)),
             f"pylinkage step_fast, kinematics of {TURN_POINTS} angles": (
                 DESIGNS,
                 lambda: step_fast(DESIGNS * TURN_POINTS),
@@ -177,6 +183,8 @@ def simulated() -> dict[str, np.ndarray]:
 
 
 RATIOS = (
+    ("ours, with all constraints and a limit on the ripple", "ours, with all constraints"),
+    ("ours, for people", "ours, with all constraints"),
     ("ours, with all constraints", "fsolve at 360 angles"),
     (f"ours, work of a turn from {TURN_POINTS} angles", f"pylinkage step_fast, kinematics of {TURN_POINTS} angles"),
     (f"ours, work of a turn from {TURN_POINTS} angles", "pylinkage step_fast, kinematics of 360 angles"),

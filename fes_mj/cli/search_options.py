@@ -47,6 +47,8 @@ class SearchOptions(PrintOptions, MomentsOptions):
         Largest mean absolute knee speed in deg/s instead (107.1 in the TRT).
     hip_speed_limit
         Largest mean absolute hip speed in deg/s instead (69.1 in the TRT).
+    ripple_limit
+        Largest ripple of the crank speed in %, (largest - smallest) / mean, on a tricycle with two legs and fixed gear.
     caution
         Take so many standard deviations of the gain off it: finds designs that win for sure (not with --moments).
     riders
@@ -74,6 +76,7 @@ class SearchOptions(PrintOptions, MomentsOptions):
     speeds_of: str = "trt"
     knee_speed_limit: float | None = None
     hip_speed_limit: float | None = None
+    ripple_limit: float | None = None
     caution: float = 0.0
     riders: Literal["one", "population", "population-p10"] = "one"
     samples: int | None = None
@@ -91,6 +94,8 @@ class SearchOptions(PrintOptions, MomentsOptions):
             raise InputError(f"--searches is {self.searches}; it must be at least 1")
         if self.seed < 0:
             raise InputError(f"--seed is {self.seed}; it must not be negative")
+        if self.ripple_limit is not None and not 0 < self.ripple_limit <= 200:
+            raise InputError(f"--ripple-limit is {self.ripple_limit:g}; it must be above 0 and at most 200 %")
         if not 0 <= self.caution <= 10:
             raise InputError(f"--caution is {self.caution:g}; it must be from 0 to 10 standard deviations")
         if self.caution and (self.moments or self.method == "nsga-ii"):
@@ -129,6 +134,7 @@ class SearchOptions(PrintOptions, MomentsOptions):
             knee_speed=self.knee_speed_limit,
             hip_speed=self.hip_speed_limit,
             caution=self.caution,
+            ripple=None if self.ripple_limit is None else self.ripple_limit / 100,
         )
         if self.riders == "one":
             return problem

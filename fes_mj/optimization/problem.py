@@ -18,6 +18,7 @@ from fes_mj.joints import JOINTS, PerJoint
 from fes_mj.moments import JointMoments
 from fes_mj.optimization.people import ONE_RIDER, People, sampled
 from fes_mj.optimization.problem_file import DEFAULT, VARIED, Limits, depth_inside, load_limits
+from fes_mj.optimization.ripple import RippleLimit
 from fes_mj.reference_tricycle import ReferenceTricycle
 from fes_mj.units import RPM
 from fes_mj.variables import COMPONENTS, VARIABLES, component, replaced
@@ -82,7 +83,7 @@ class Problem:
     power counts. joint_speed: largest mean absolute speed of each joint, deg/s. caution: with moments as of
     cycles.uncertain_table, how many standard deviations of the gain over `baseline` (power of a design to beat,
     shape (sets,)) are taken off it. people: who else rides it; the limits on joints and their speeds hold for each, and
-    the power is the people's.
+    the power is the people's. ripple: of the crank speed when ridden, if it is limited.
     """
 
     template: Design
@@ -92,6 +93,7 @@ class Problem:
     caution: float = 0.0
     baseline: FloatArray | float = 0.0
     people: People = ONE_RIDER
+    ripple: RippleLimit | None = None
     points: int = TURN_POINTS
 
     def __post_init__(self) -> None:
@@ -135,6 +137,7 @@ class Problem:
             *(Constraint(f"{joint}_overlap", "deg", True, _LEAST_OVERLAP, 5.0) for joint in JOINTS),
             Constraint("gear_ratio_min", "", True, self.gear_ratios[0], 0.1),
             Constraint("gear_ratio", "", False, self.gear_ratios[1], 0.1),
+            *([Constraint("speed_ripple", "", False, self.ripple.limit, 0.05)] if self.ripple else []),
         )
 
     @property
@@ -191,7 +194,8 @@ class Problem:
         chosen = free.shape == x.shape
         gear_ratio = np.full(len(x), self.gear_ratios[1]) if chosen else x[:, -1].copy()
         if sound.any():
-            turn = cycles(self.people.seated(take(design, sound), free[sound, LENGTH_COUNT:]), self.table, self.points)
+            ridden = self.people.seated(take(design, sound), free[sound, LENGTH_COUNT:])
+            turn = cycles(ridden, self.table, self.points)
             # cadence and joint speeds are those at gear ratio 1
             cadence, riders = self._cadence_of_one, self.people.count
             speeds = turn.travel.map(lambda travel: np.degrees(travel) * cadence / (2 * np.pi))
@@ -201,7 +205,8 @@ class Problem:
                 gear_ratio[sound] = np.fmin(for_all * (1 - _HAIR), self.gear_ratios[1])
             ratios = np.repeat(gear_ratio[sound], riders)
             power[sound] = self.people.power(turn.work * (cadence / (2 * np.pi) * ratios[:, None]))
-            motion[sound] = self._worst(_motion_values(turn, self.table.measured_on, speeds, ratios))
+            each = _motion_values(turn, self.table.measured_on, speeds, ratios)
+            motion[sound] = self._worst(np.column_stack([each, *self._ripple(ridden, each, ratios)]))
         values = np.hstack([lengths, motion])
         scales = np.array([constraint.scale for constraint in self.constraints])
         filled = np.column_stack([free, gear_ratio])
@@ -223,6 +228,17 @@ class Problem:
             for c, value, margin in zip(self.constraints, evaluation.values[row], evaluation.margins[row], strict=True)
             if margin < 0
         ]
+
+    def _ripple(self, design: Design, values: FloatArray, gear_ratio: FloatArray) -> list[FloatArray]:
+        """Where it is limited, the ripple of a batch that keeps the other limits on the turn (`values`), else NaN."""
+        if not self.ripple:
+            return []
+        found = np.full(len(values), np.nan)
+        good = np.all(_margins(self.motion[: values.shape[1]], values) >= 0, axis=1)
+        if good.any():
+            geared = design.changed({"gear_ratio": gear_ratio[:, None]}, {})
+            found[good] = self.ripple.ripple(take(geared, good))
+        return [found]
 
     def _worst(self, values: FloatArray) -> FloatArray:
         """Of each constraint on the turn over all riders, shape (n, constraints); values: (n * riders, constraints)."""
@@ -250,7 +266,7 @@ class Problem:
 def _motion_values(
     turn: Cycles, reference: ReferenceTricycle, speeds: PerJoint[FloatArray], gear_ratio: FloatArray
 ) -> FloatArray:
-    """Values of the constraints on the turn, in their order, shape (n, 11)."""
+    """Values of the constraints on the turn but the ripple, in their order, shape (n, 11)."""
     ranges = [np.degrees(side[joint]) for joint in JOINTS for side in (turn.low, turn.high)]
     rates = (speeds[joint] * gear_ratio for joint in JOINTS)
     overlaps = (_overlap(joint, turn, reference) for joint in JOINTS)
@@ -287,11 +303,12 @@ def make_problem(
     knee_speed: float | None = None,
     hip_speed: float | None = None,
     caution: float = 0.0,
+    ripple: float | None = None,
 ) -> Problem:
     """The problem for a kind of six-bar ("crt", "cdt") under joint moments.
 
     compared_with: the design whose mean joint speeds are the limits (unless given, deg/s) and whose power is the
-    baseline. start: a design whose rider, seat and coupler angle are kept; by default a printed one. limits: a problem
+    baseline. ripple: largest of the crank speed when ridden. start: a design whose rider, seat and coupler angle are kept; by default a printed one. limits: a problem
     file. Raises InputError for what cannot be used, and for a start of another kind.
     """
     template = load_design(start or ("r1" if kind == "crt" else "d1"))
@@ -304,4 +321,5 @@ def make_problem(
     own, given = joint_speeds(other, table).map(lambda speed: speed * (1 + 1e-9)), PerJoint(knee_speed, hip_speed)
     speed = PerJoint(*(mine if asked is None else asked for mine, asked in zip(own, given, strict=True)))
     baseline = cycles(other, table).work[0] * other.linkage.cadence / (2 * math.pi)
-    return Problem(template, table, load_limits(limits), speed, caution, baseline)
+    even = None if ripple is None else RippleLimit(ripple, moments)
+    return Problem(template, table, load_limits(limits), speed, caution, baseline, ripple=even)

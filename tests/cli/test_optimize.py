@@ -117,6 +117,12 @@ def test_own_moments_have_no_error_bar(tmp_path: Path, capsys: pytest.CaptureFix
         (["cdt", "--out", "best.txt"], "best.txt: cannot write the design: the name must end in .toml"),
         (["cdt", "--report", "nowhere/best.html"], "the folder does not exist"),
         (["cdt", "--problem", "missing.toml"], "missing.toml: cannot read the problem"),
+        (["cdt", "--ripple-limit", "0"], "--ripple-limit is 0; it must be above 0 and at most 200 %"),
+        (["cdt", "--ripple-limit", "nan"], "--ripple-limit is nan; it must be above 0"),
+        (
+            ["cdt", "--start", "d1", "--speeds-of", "d1", "--ripple-limit", "10"],
+            "is not feasible: speed_ripple is 0.16",
+        ),
         (["cdt", "--samples", "100"], "--samples is of a population; it needs --riders population"),
         (["cdt", "--riders", "population", "--samples", "1"], "--samples is 1; it must be from 10 to 100,000"),
         (["cdt", "--riders", "population", "--sample-seed", "-1"], "--sample-seed is -1; it must not be negative"),
