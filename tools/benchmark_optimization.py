@@ -24,7 +24,8 @@ from fes_mj.design import ONE_LEG, Design
 from fes_mj.design_file import load_design
 from fes_mj.files import json_text, write_text
 from fes_mj.moments_file import load_moments
-from fes_mj.optimization.problem import Problem, for_people
+from fes_mj.optimization.people import sampled
+from fes_mj.optimization.problem import Problem
 from fes_mj.optimization.problem_file import load_limits
 from fes_mj.optimization.ripple import RippleLimit
 from fes_mj.provenance import provenance
@@ -118,7 +119,7 @@ def evaluations() -> dict[str, np.ndarray]:
     batch = with_lengths(design, drawn[..., None])
     problem = Problem(design, table, load_limits(), joint_speeds(design, table))
     evenly = replace(problem, ripple=RippleLimit(0.2, MOMENTS))
-    for_all = for_people(problem, "population", 1000, 0)
+    for_all = replace(problem, people=sampled("population", 1000, 0))
     seated = np.insert(drawn[:, : DESIGNS // 4].T, [len(drawn)] * len(for_all.people.search), 0.0, axis=1)
     return rates(
         {

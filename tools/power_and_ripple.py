@@ -15,12 +15,12 @@ from fes_mj.optimization.optimize import optimize
 from fes_mj.optimization.problem import Problem
 from fes_mj.optimization.problem_file import DEFAULT
 from fes_mj.optimization.ripple import RippleLimit
+from fes_mj.optimization.winner import assess
 from fes_mj.parallel import Workers
 from fes_mj.provenance import provenance
 from fes_mj.reduced import steady_ripple
 from fes_mj.ride import Ride, balancing_slope
 from fes_mj.ride_case import RideCase
-from fes_mj.statics import quasi_static
 from fes_mj.style import COLOURS, STYLE
 from fes_mj.table import Table
 from fes_mj.units import KMH
@@ -36,6 +36,8 @@ COLUMNS = {
     "largest ripple allowed, %": ".1f",
     "power, W": ".2f",
     "simulated, W": ".2f",
+    "±1 mm: can turn, %": ".1f",
+    "5th percentile, W": ".2f",
     "ripple, %": ".2f",
     "slope, %": ".2f",
     "with a freewheel": "",
@@ -53,18 +55,18 @@ def even(limit: float | None) -> Problem:
 
 def ridden(design: Design, limit: float | None) -> dict[str, Any]:
     """A design on the slope that its mean power balances, with a freewheel: the cells of COLUMNS."""
-    from fes_mj.crosscheck import Case
-
     level = Ride(design, MOMENTS)
-    slope, static = balancing_slope(level), quasi_static(design, MOMENTS)
+    slope, winner = balancing_slope(level), assess(design, load_design("d1"), MOMENTS)
     case = RideCase(replace(level, road=replace(level.road, slope=slope)), compiled=True)
     trace = case.simulation.trace
     stopped = f"stops after {trace.stopped_at:.1f} s" if trace.stopped_at is not None else "rides"
     cells = (
         design.name,
         None if limit is None else 100 * limit,
-        static.power_mean,
-        Case(design, MOMENTS).simulation.power_mean,
+        winner.case.static.power_mean,
+        winner.case.simulation.power_mean,
+        100 * winner.manufacturing.turning,
+        winner.manufacturing.power_low,
         100 * steady_ripple(replace(level, transmission="fixed")),
         100 * slope,
         stopped,
@@ -88,23 +90,19 @@ def found(limit: float | None) -> Design:
 def markdown(rows: list[dict[str, Any]]) -> str:
     """The page."""
     table = Table("", COLUMNS, [tuple(row.values()) for row in rows])
-    return (
-        "\n\n".join(
-            [
-                "# Power against ripple",
-                "Written by `python -m tools.power_and_ripple`; versions and inputs: ripple.json. A search of the kind is "
-                "`fes_mj optimize cdt --speeds-of d1 --ripple-limit 8 --method cma-es`.",
-                "The coupler-driven tricycle with the most mean power of one leg, p1p2, at most D1's joint speeds and gear "
-                "ratio, 5 mm of Grashof margin, and a ripple of the crank speed, (largest - smallest) / mean, below a "
-                "limit: with both legs and a fixed gear at 5.71 km/h on the level, the frame free to recoil. Each is "
-                "then ridden, by MuJoCo and by the reduced equation of motion, for a minute with a freewheel on the slope "
-                "that its mean power balances at this speed, its moments independent of speed.",
-                "![Power against ripple](ripple.png)",
-                table.markdown().strip(),
-            ]
-        )
-        + "\n"
-    )
+    parts = [
+        "# Power against ripple",
+        "Written by `python -m tools.power_and_ripple`; versions and inputs: ripple.json. A search of the kind is "
+        "`fes_mj optimize cdt --speeds-of d1 --ripple-limit 8 --method cma-es`.",
+        "The coupler-driven tricycle with the most mean power of one leg, p1p2, at most D1's joint speeds and gear "
+        "ratio, 5 mm of Grashof margin, and a ripple of the crank speed, (largest - smallest) / mean, below a limit: "
+        "with both legs and a fixed gear at 5.71 km/h on the level, the frame free to recoil. Each is then ridden, by "
+        "MuJoCo and by the reduced equation of motion, for a minute with a freewheel on the slope that its mean power "
+        "balances at this speed, its moments independent of speed.",
+        "![Power against ripple](ripple.png)",
+        table.markdown().strip(),
+    ]
+    return "\n\n".join(parts) + "\n"
 
 
 def draw(rows: list[dict[str, Any]]) -> None:

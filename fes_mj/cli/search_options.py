@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import shlex
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -52,8 +52,8 @@ class SearchOptions(PrintOptions, MomentsOptions):
     caution
         Take so many standard deviations of the gain off it: finds designs that win for sure (not with --moments).
     riders
-        For whom: the design's own rider, or people from percentiles, each with the seat moved within the limits of
-        `fes_mj fit`: most power in the mean over the sample (population), or for 9 of 10 (population-p10).
+        Whose power counts: the design's own rider's, or that of a sample of people, each with the seat moved within
+        the limits of `fes_mj fit`: in the mean (population), or what 9 of 10 have (population-p10).
     samples
         With --riders population: people of each sex (default 1000).
     sample_seed
@@ -122,7 +122,8 @@ class SearchOptions(PrintOptions, MomentsOptions):
 
     def load_problem(self, kind: str, moments: JointMoments) -> Problem:
         """The problem that the options describe."""
-        from fes_mj.optimization.problem import for_people, make_problem
+        from fes_mj.optimization.people import ONE_RIDER, sampled
+        from fes_mj.optimization.problem import make_problem
         from fes_mj.optimization.problem_file import DEFAULT
 
         problem = make_problem(
@@ -136,9 +137,9 @@ class SearchOptions(PrintOptions, MomentsOptions):
             caution=self.caution,
             ripple=None if self.ripple_limit is None else self.ripple_limit / 100,
         )
-        if self.riders == "one":
-            return problem
-        return for_people(problem, self.riders, **self._people)
+        return replace(
+            problem, people=ONE_RIDER if self.riders == "one" else sampled(self.riders, *self._people.values())
+        )
 
     @property
     def inputs(self) -> list[Path]:

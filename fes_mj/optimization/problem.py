@@ -16,7 +16,7 @@ from fes_mj.errors import InputError
 from fes_mj.geometry import LEAST_CLEARANCE, grashof_margin
 from fes_mj.joints import JOINTS, PerJoint
 from fes_mj.moments import JointMoments
-from fes_mj.optimization.people import ONE_RIDER, People, sampled
+from fes_mj.optimization.people import ONE_RIDER, People
 from fes_mj.optimization.problem_file import DEFAULT, VARIED, Limits, depth_inside, load_limits
 from fes_mj.optimization.ripple import RippleLimit
 from fes_mj.reference_tricycle import ReferenceTricycle
@@ -287,12 +287,6 @@ def _margins(constraints: tuple[Constraint, ...], values: FloatArray) -> FloatAr
     return np.column_stack([c.margin(values[:, column]) for column, c in enumerate(constraints)])
 
 
-def for_people(problem: Problem, statistic: str, samples: int, sample_seed: int) -> Problem:
-    """The same problem for a sample of people (see people.sampled) instead of the template's rider."""
-    rider, people = sampled(statistic, samples, sample_seed)
-    return replace(problem, template=replace(problem.template, rider=rider), people=people)
-
-
 def make_problem(
     kind: str,
     moments: JointMoments,
@@ -308,8 +302,9 @@ def make_problem(
     """The problem for a kind of six-bar ("crt", "cdt") under joint moments.
 
     compared_with: the design whose mean joint speeds are the limits (unless given, deg/s) and whose power is the
-    baseline. ripple: largest of the crank speed when ridden. start: a design whose rider, seat and coupler angle are kept; by default a printed one. limits: a problem
-    file. Raises InputError for what cannot be used, and for a start of another kind.
+    baseline. ripple: largest of the crank speed when ridden. start: a design whose rider, seat and coupler angle are
+    kept; by default a printed one. limits: a problem file. Raises InputError for what cannot be used, and for a start
+    of another kind.
     """
     template = load_design(start or ("r1" if kind == "crt" else "d1"))
     if template.linkage.kind != kind:

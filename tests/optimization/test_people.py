@@ -10,7 +10,7 @@ import fes_mj
 from fes_mj.fit import SEAT_LIMITS, best_seats, fit
 from fes_mj.optimization.optimize import optimize
 from fes_mj.optimization.people import ONE_RIDER, STATISTICS, sampled
-from fes_mj.optimization.problem import LENGTH_COUNT, Problem, for_people
+from fes_mj.optimization.problem import LENGTH_COUNT, Problem
 from fes_mj.optimization.search import Search, feasible_start
 from fes_mj.riders import populations
 from fes_mj.statics import QuasiStatic
@@ -21,9 +21,8 @@ MOMENTS = fes_mj.load_moments("p1p2")
 
 def of_people(name: str, statistic: str = "population") -> Problem:
     problem = problem_of(name, grashof_min=0.005)
-    return for_people(
-        replace(problem, joint_speed=problem.joint_speed.map(lambda speed: 1.5 * speed)), statistic, 200, 0
-    )
+    speeds = problem.joint_speed.map(lambda speed: 1.5 * speed)
+    return replace(problem, joint_speed=speeds, people=sampled(statistic, 200, 0))
 
 
 def feasible(problem: Problem) -> np.ndarray:
@@ -45,9 +44,8 @@ def test_few_riders_stand_for_a_sample(name: str) -> None:
     design, random = fes_mj.load_design(name), np.random.default_rng(5)
     thigh, shank, _ = np.hstack([people.sample(40, random) for people in populations().values()])
     power = best_seats(design, thigh, shank, TABLE)[1].power
-    rider, people = sampled("population", 1000, 0)
-    legs = np.vstack([[rider.thigh, rider.shank], people.others])
-    few = best_seats(design, *legs.T, TABLE)[1].power[:, None]
+    people = sampled("population", 1000, 0)
+    few = np.insert(best_seats(design, *people.others.T, TABLE)[1].power, 0, 0.0)[:, None]
     chance = 3 * power.std() / np.sqrt(len(power))
     assert people.power(few)[0, 0] == pytest.approx(power.mean(), abs=chance + 0.1)
     low = replace(people, statistic="population-p10").power(few)[0, 0]
@@ -56,8 +54,9 @@ def test_few_riders_stand_for_a_sample(name: str) -> None:
 
 @pytest.mark.parametrize("statistic", STATISTICS)
 def test_a_power_that_is_linear_in_the_legs_is_exact(statistic: str) -> None:
-    rider, people = sampled(statistic, 300, 3)
-    legs, random = np.vstack([[rider.thigh, rider.shank], people.others]), np.random.default_rng(3)
+    people, random = sampled(statistic, 300, 3), np.random.default_rng(3)
+    own = [1.0, 1.0]  # whoever that is: his power does not count
+    legs = np.vstack([own, people.others])
     sample = np.hstack([each.sample(300, random) for each in populations().values()])[:2].T
     slope = np.array([7.0, -30.0])
     expected = {"population": np.mean, "population-p10": lambda power: np.percentile(power, 10)}[statistic]
@@ -91,7 +90,7 @@ def test_seats_stay_within_the_limits_of_fit_and_the_linkage_stays() -> None:
     x = problem.variables(problem.template)
     x[LENGTH_COUNT:-1] = np.random.default_rng(0).uniform(-1, 1, len(x) - LENGTH_COUNT - 1)
     drawn, *others = problem.riders(x)
-    assert drawn.rider == replace(problem.template.rider, mass=drawn.rider.mass)
+    assert drawn == replace(problem.template, name=drawn.name)
     for each in others:
         shift = each.linkage.ground - drawn.linkage.ground
         moves = (shift.real, -shift.imag, each.linkage.seat_angle - drawn.linkage.seat_angle)
@@ -116,6 +115,5 @@ def test_a_search_finds_a_design_that_suits_people_better() -> None:
     for fitted, own in itertools.zip_longest(seated, drawn):
         assert isinstance(fitted, QuasiStatic)
         assert fitted.power_mean > own.power_mean - 0.05
-    riders = problem.riders(best.x)
-    legs = [[each.rider.thigh for each in riders], [each.rider.shank for each in riders]]
-    assert best.merit > problem.people.power(best_seats(printed, *legs, TABLE)[1].power[:, None])[0, 0]
+    power = best_seats(printed, *problem.people.others.T, TABLE)[1].power
+    assert best.merit > problem.people.power(np.insert(power, 0, 0.0)[:, None])[0, 0]
