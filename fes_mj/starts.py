@@ -48,13 +48,13 @@ class Starts:
         }
 
 
-def starts(ride: Ride, angles: int = ANGLES) -> Starts:
+def starts(ride: Ride, angles: int | None = None) -> Starts:
     """Try rides from rest, launches and slopes. angles: crank angles that are tried, over half a turn.
 
     A faster launch and a gentler slope are taken to do whatever a slower and a steeper one do. Raises InputError as
     reduced.ride, MissingPartError without numba.
     """
-    half_turn = np.linspace(0, np.pi, angles, endpoint=False)
+    half_turn = np.linspace(0, np.pi, angles or ANGLES, endpoint=False)
 
     def rides(**changes: Any) -> bool:
         return reduced.ride(replace(ride, **changes), compiled=True).rides
