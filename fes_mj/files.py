@@ -7,11 +7,11 @@ import os
 import secrets
 import shutil
 import tomllib
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, NamedTuple, NoReturn
+from typing import Any, NoReturn
 
 import numpy as np
 
@@ -154,23 +154,37 @@ def read_json(path: Path, what: str) -> dict[str, Any]:
     return content
 
 
-class Table(NamedTuple):
-    """Columns of a text table: the text above its header line, the names in that, the numbers asked for.
+@dataclass(frozen=True)
+class Table:
+    """A text table, whose cells are read column by column.
 
-    lines: line number of each row. columns: by name, shape (rows,).
+    preamble: the text above the header, which is line `start`. lines: number of each row's line. rows: their cells.
     """
 
+    path: Path
     preamble: str
+    start: int
     header: list[str]
     lines: list[int]
-    columns: dict[str, FloatArray]
+    rows: list[list[str]]
+
+    def column(self, name: str) -> FloatArray:
+        """The finite numbers of a column, shape (rows,). Raises InputError naming file, line, column and value."""
+        if name not in self.header:
+            known = ", ".join(self.header) or "nothing"
+            raise InputError(f"{self.path}: line {self.start}: there is no column {name!r}; the header names {known}")
+        if self.header.count(name) > 1:
+            raise InputError(f"{self.path}: line {self.start}: the header names the column {name!r} twice")
+        place = self.header.index(name)
+        cells = zip(self.lines, self.rows, strict=True)
+        return np.array([_cell(self.path, line, name, row[place]) for line, row in cells], float)
 
 
-def read_columns(path: Path, what: str, columns: Sequence[str], *, after: str = "", commas: bool = True) -> Table:
-    """The named columns of a table of numbers, found by its header line; blank lines are passed over.
+def read_table(path: Path, what: str, *, after: str = "", commas: bool = True) -> Table:
+    """A table with a header line; blank lines are passed over.
 
     after: the line above the header, if that is not the file's first. commas: between the columns, or blanks and tabs.
-    Raises InputError naming file, line, column and value.
+    Raises InputError naming file and line.
     """
     text = read_text(path, what).splitlines()
     start = next((number for number, line in enumerate(text, 1) if line.strip().lower() == after), 0) if after else 0
@@ -184,22 +198,15 @@ def read_columns(path: Path, what: str, columns: Sequence[str], *, after: str = 
     while start < len(text) and not text[start].strip():
         start += 1
     header = cells(text[start]) if start < len(text) else []
-    for column in columns:
-        if column not in header:
-            known = ", ".join(header) or "nothing"
-            raise InputError(f"{path}: line {start + 1}: there is no column {column!r}; the header names {known}")
-        if header.count(column) > 1:
-            raise InputError(f"{path}: line {start + 1}: the header names the column {column!r} twice")
-    places, lines, rows = [header.index(column) for column in columns], [], []
+    lines, rows = [], []
     for number, line in enumerate(text[start + 1 :], start + 2):
         row = cells(line)
         if row and len(row) != len(header):
             raise InputError(f"{path}: line {number} has {len(row)} values; the header names {len(header)} columns")
         if row:
             lines.append(number)
-            rows.append([_cell(path, number, *pair) for pair in zip(columns, (row[at] for at in places), strict=True)])
-    values = np.array(rows, float).reshape(len(rows), len(columns)).T
-    return Table("\n".join(text[:start]), header, lines, dict(zip(columns, values, strict=True)))
+            rows.append(row)
+    return Table(path, "\n".join(text[:start]), start + 1, header, lines, rows)
 
 
 def _cell(path: Path, line: int, column: str, cell: str) -> float:

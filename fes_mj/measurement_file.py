@@ -19,7 +19,7 @@ from fes_mj.misreading import odd_angles
 from fes_mj.moments import Misreading
 from fes_mj.reference_tricycle import PAPER_TRICYCLE, ReferenceTricycle
 from fes_mj.segments import DE_LEVA
-from fes_mj.trial import WHAT, Turn, bounded, by_crank, by_knee, is_trial, read_table, says_radians, times
+from fes_mj.trial import WHAT, Turn, bounded, by_crank, by_knee, is_trial, load_table, says_radians, times
 from fes_mj.units import RPM
 from fes_mj.variables import VARIABLES
 
@@ -101,24 +101,22 @@ class Description:
 
     def _by_crank(self, path: Path) -> tuple[list[Turn], list[Misreading]]:
         """Turns of a file with a crank angle: of a trial over time each, of other rows one."""
-        trial = is_trial(path)
-        crank = self.columns["crank"]
-        table = read_table(path, WHAT, (crank, *self._measured, *(("time",) if trial else ())))
-        given, unit = bounded(path, table, crank, angle=True), self._angle_unit(path, table)
+        table, crank = load_table(path, WHAT), self.columns["crank"]
+        trial = is_trial(table)
+        given, unit = bounded(table, crank, angle=True), self._angle_unit(table)
         angle = self.sense * (np.radians(given) if unit == "deg" else given)
         if trial:
-            times(path, table)
+            times(table)
+        values = self._values(table)
         rows = by_crank(path, crank, angle) if trial else [np.arange(len(angle))]
-        values = self._values(path, table)
         return [self._turn(angle[row] + self.zero, values[:, row]) for row in rows], odd_angles(given, unit)
 
     def _by_knee(self, path: Path, kinematics: Path) -> list[Turn]:
         """Turns of a trial, from one dead centre of the knee to the next, between which the crank turns evenly."""
         column = _word(self.section, "knee_angle", "knee_angle_r")
-        motion = read_table(kinematics, "kinematics", ("time", column))
-        tops = by_knee(kinematics, column, times(kinematics, motion), self.sign.knee * motion.columns[column])
-        table = read_table(path, WHAT, ("time", *self._measured))
-        time, values = times(path, table), self._values(path, table)
+        motion, table = load_table(kinematics, "kinematics"), load_table(path, WHAT)
+        tops = by_knee(kinematics, column, times(motion), self.sign.knee * motion.column(column))
+        time, values = times(table), self._values(table)
         if time[0] > tops[-1] or time[-1] < tops[0]:
             raise InputError(
                 f"{path}: column time goes from {time[0]:g} to {time[-1]:g} s, whole turns of {kinematics} from "
@@ -138,9 +136,9 @@ class Description:
         """The two columns that were measured."""
         return self.pedal_force or [self.columns[joint] for joint in JOINTS]
 
-    def _values(self, path: Path, table: Table) -> FloatArray:
+    def _values(self, table: Table) -> FloatArray:
         """Knee and hip moment, N m, extension positive, or the two components of the pedal force, N; shape (2, n)."""
-        values = np.stack([bounded(path, table, column) for column in self._measured])
+        values = np.stack([bounded(table, column) for column in self._measured])
         return values if self.pedal_force else self.scale * np.array([*self.sign])[:, None] * values
 
     def _turn(self, angle: FloatArray, values: FloatArray) -> Turn:
@@ -150,14 +148,14 @@ class Description:
         motion = kinematics.solve(self.measured_on.design, angle + self.measured_on.top_dead_centre)
         return Turn(angle, *leg_moments(motion, self.measured_on.cadence, values[0] + 1j * values[1]))
 
-    def _angle_unit(self, path: Path, table: Table) -> str:
+    def _angle_unit(self, table: Table) -> str:
         """Unit of the crank angle: as declared, otherwise as the header of an OpenSim file says, otherwise deg."""
         header = says_radians(table)
         said = {None: "deg", True: "rad", False: "deg"}[header]
         unit = self.section.choice("angle_unit", ("deg", "rad"), said)
         if header is not None and unit != said:
             raise InputError(
-                f"{path}: the header says that angles are in {said}, moments.angle_unit of {self.path} says "
+                f"{table.path}: the header says that angles are in {said}, moments.angle_unit of {self.path} says "
                 f"{unit}; correct one of them"
             )
         return unit

@@ -25,9 +25,11 @@ def sampled_coefficients(group: str) -> FloatArray:
         return np.asarray(stored["coefficients"], float)
 
 
-def sampled_moments(group: str) -> list[JointMoments]:
-    """The curves drawn for "p1p2" or "p1p3", each as moments of its own, without a covariance."""
-    return [moments_of(curve, f"{group} {number}") for number, curve in enumerate(sampled_coefficients(group), 1)]
+def sampled_moments(group: str, count: int | None = None) -> list[JointMoments]:
+    """The curves drawn for "p1p2" or "p1p3", or so many of them, each as moments of its own, without a covariance."""
+    curves = sampled_coefficients(group)
+    some = np.linspace(0, len(curves) - 1, count or len(curves)).astype(int)
+    return [moments_of(curves[row], f"{group} {row + 1}") for row in some]
 
 
 def moments_of(coefficients: FloatArray, name: str) -> JointMoments:

@@ -16,7 +16,7 @@ from fes_mj.misreading import odd_angles, odd_moments
 from fes_mj.moments import COLUMNS, GROUPS, TURN_POINTS, JointMoments, Misreading
 from fes_mj.reference_tricycle import PAPER_TRICYCLE, ReferenceTricycle
 from fes_mj.text import printable
-from fes_mj.trial import WHAT, Turn, bounded, read_table
+from fes_mj.trial import WHAT, Turn, bounded, load_table
 from fes_mj.uncertainty import power_weights, standard_deviation
 from fes_mj.units import RPM
 
@@ -74,12 +74,11 @@ def load_moments(source: str | Path = "p1p2", left: str | Path | None = None) ->
     """
     if left is not None:
         return replace(load_moments(source), left=load_moments(left))
-    path = _FOLDER / f"{source}.csv" if source in GROUPS else Path(source)
-    moments = load_measurement(path).moments
     if source in GROUPS:
+        path = _FOLDER / f"{source}.csv"
         with np.load(path.with_suffix(".npz")) as stored:
-            moments = replace(moments, covariance=stored["covariance"])
-    return moments
+            return JointMoments(path.stem, *_plain_turn(path), covariance=stored["covariance"])
+    return load_measurement(Path(source)).moments
 
 
 def load_measurement(path: Path) -> Measurement:
@@ -87,16 +86,20 @@ def load_measurement(path: Path) -> Measurement:
     if path.suffix.lower() == ".toml":
         description = Description.read(path)
         return _measurement(path, *description.turns(), description.measured_on, description.cadence_known)
-    table = read_table(path, WHAT, ())
+    turn = _plain_turn(path)
+    return _measurement(path, [turn], odd_angles(np.degrees(turn.crank_angle), "deg"), PAPER_TRICYCLE, False)
+
+
+def _plain_turn(path: Path) -> Turn:
+    """The turn of a plain file."""
+    table = load_table(path, WHAT)
     if table.header != [*COLUMNS]:
         raise InputError(
             f"{path}: the header is {','.join(table.header)!r}; of a plain file it must be {','.join(COLUMNS)!r}; "
             "other columns, units and zeros are described in a measurement file (.toml)"
         )
-    table = read_table(path, WHAT, COLUMNS)
-    angle, *moments = (bounded(path, table, column, column == COLUMNS[0]) for column in COLUMNS)
-    turn = Turn(np.radians(angle), *moments)
-    return _measurement(path, [turn], odd_angles(angle, "deg"), PAPER_TRICYCLE, path.parent == _FOLDER)
+    angle, *moments = (bounded(table, column, column == COLUMNS[0]) for column in COLUMNS)
+    return Turn(np.radians(angle), *moments)
 
 
 def measured_files(path: Path) -> list[Path]:

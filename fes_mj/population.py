@@ -12,9 +12,8 @@ from fes_mj.cycles import WorkTable
 from fes_mj.design import Design
 from fes_mj.fit import SEAT_LIMITS, SeatLimits, best_seats, score
 from fes_mj.moments import JointMoments
-from fes_mj.riders import Legs, Population, populations
+from fes_mj.riders import SAMPLES, Legs, Population, populations
 
-SAMPLES = 1000  # people of each sex: a share is right to 1.6 % of the sample, one standard deviation
 SEATS = ("unmoved", "fitted")
 PEOPLE = {"men": "man", "women": "woman"}
 # Thighs and shanks for which the best seat is sought; in between its power is interpolated (see Study.map_error).

@@ -8,7 +8,7 @@ import numpy as np
 
 from fes_mj.arrays import FloatArray, IntArray
 from fes_mj.errors import InputError
-from fes_mj.files import Table, read_columns
+from fes_mj.files import Table, read_table
 
 WHAT = "joint moments"
 OPENSIM = (".sto", ".mot")
@@ -27,23 +27,25 @@ class Turn(NamedTuple):
     hip: FloatArray
 
 
-def is_trial(path: Path) -> bool:
-    """Whether a file of moments is a series over time."""
-    return path.suffix.lower() in OPENSIM or "time" in read_table(path, WHAT, ()).header
-
-
-def read_table(path: Path, what: str, columns: tuple[str, ...]) -> Table:
-    """Columns of a CSV or an OpenSim file by name. Raises InputError naming file, line, column and value."""
+def load_table(path: Path, what: str) -> Table:
+    """A CSV or an OpenSim file. Raises InputError as files.read_table."""
     opensim = path.suffix.lower() in OPENSIM
-    return read_columns(path, what, columns, after="endheader" if opensim else "", commas=not opensim)
+    return read_table(path, what, after="endheader" if opensim else "", commas=not opensim)
 
 
-def bounded(path: Path, table: Table, column: str, angle: bool = False) -> FloatArray:
+def is_trial(table: Table) -> bool:
+    """Whether a table is a series over time."""
+    return table.path.suffix.lower() in OPENSIM or "time" in table.header
+
+
+def bounded(table: Table, column: str, angle: bool = False) -> FloatArray:
     """A column of moments (N m or N m/kg) or crank angles, every value of which a leg or a crank can have."""
-    limit, values = LARGEST_ANGLE if angle else LARGEST_MOMENT, table.columns[column]
+    limit, values = LARGEST_ANGLE if angle else LARGEST_MOMENT, table.column(column)
     for line, value in zip(table.lines, values.tolist(), strict=True):
         if abs(value) > limit:
-            raise InputError(f"{path}: line {line}: {column} is {value:g}; it must be from -{limit:g} to {limit:g}")
+            raise InputError(
+                f"{table.path}: line {line}: {column} is {value:g}; it must be from -{limit:g} to {limit:g}"
+            )
     return values
 
 
@@ -53,9 +55,9 @@ def says_radians(table: Table) -> bool | None:
     return found.group(1).lower() == "no" if found else None
 
 
-def times(path: Path, table: Table) -> FloatArray:
+def times(table: Table) -> FloatArray:
     """The column "time", s, shape (n,). Raises InputError unless it grows."""
-    time = table.columns["time"]
+    path, time = table.path, table.column("time")
     if len(time) < 2:
         raise InputError(f"{path}: {len(time)} row; a trial is a series over time")
     stuck = np.flatnonzero(np.diff(time) <= 0)

@@ -12,8 +12,8 @@ from fes_mj.errors import InputError
 from fes_mj.files import (
     Section,
     csv_text,
-    read_columns,
     read_json,
+    read_table,
     read_text,
     read_toml,
     replacing,
@@ -72,10 +72,10 @@ def test_a_byte_order_mark_is_passed_over(tmp_path: Path) -> None:
     path.write_text("a = 1", encoding="utf-8-sig")
     assert read_toml(path, "test file").content == {"a": 1}
     path.write_text("a,b\n1,2\n\n3,4\n", encoding="utf-8-sig")
-    table = read_columns(path, "table", ("b", "a"))
+    table = read_table(path, "table")
     assert table.lines == [2, 4]
-    assert table.columns["a"].tolist() == [1, 3]
-    assert table.columns["b"].tolist() == [2, 4]
+    assert table.column("a").tolist() == [1, 3]
+    assert table.column("b").tolist() == [2, 4]
 
 
 def test_unreadable_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -97,9 +97,9 @@ def test_unreadable_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
 def test_a_table_reads_back(tmp_path: Path) -> None:
     path = tmp_path / "t.csv"
     path.write_text(csv_text({"a": [1.0, 2.5], "b": [0.1, -3e-12]}))
-    read = read_columns(path, "table", ("a", "b")).columns
-    assert read["a"].tolist() == [1.0, 2.5]
-    assert read["b"].tolist() == [0.1, -3e-12]
+    table = read_table(path, "table")
+    assert table.column("a").tolist() == [1.0, 2.5]
+    assert table.column("b").tolist() == [0.1, -3e-12]
 
 
 @pytest.mark.parametrize(

@@ -10,11 +10,11 @@ from cyclopts import Parameter
 from fes_mj.design import Design, Rider
 from fes_mj.errors import InputError
 from fes_mj.fit import SeatLimits
-from fes_mj.riders import Population, populations
+from fes_mj.riders import SAMPLES, Population, populations
 from fes_mj.variables import VARIABLES
 
 _Range = Annotated[tuple[float, float], Parameter(negative="")]
-FEWEST, MOST, SAMPLES = 10, 100_000, 1000  # people of each sex in a sample
+FEWEST, MOST = 10, 100_000  # people of each sex in a sample
 _FARTHEST = {"forward": (1.0, "m"), "up": (1.0, "m"), "recline": (90.0, "deg")}
 
 

@@ -118,4 +118,4 @@ def _read(question: dict[str, Any], load: Callable[[str], Loaded]) -> Loaded:
         try:
             return load(str(path))
         except InputError as error:
-            raise InputError(str(error).replace(f"{path.parent}{'/'}", "")) from None
+            raise InputError(str(error).replace(f"{path.parent}/", "")) from None

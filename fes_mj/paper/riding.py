@@ -52,10 +52,6 @@ class Riding:
     starts: list[Starts]
     gears: dict[float, list[float]]
 
-    def values(self, of: Callable[[Any], float | None], each: Sequence[Any]) -> list[float]:
-        """A number of every ride that has it, the best known first."""
-        return [value for value in map(of, each) if value is not None]
-
 
 def study(done: Callable[[], None]) -> list[Riding]:
     """All rides. Raises MissingPartError without numba."""
@@ -70,11 +66,9 @@ def study(done: Callable[[], None]) -> list[Riding]:
 
 def _muscles(group: str) -> list[JointMoments]:
     """The best known, then DRAWS others."""
-    curves = sampled_moments(group)
-    some = [curves[i] for i in np.linspace(0, len(curves) - 1, DRAWS).astype(int)]
-    relations = drawn_relations("hill", DRAWS, SEED)
-    best = load_moments(group).at_speed(load_torque_velocity("hill"))
-    return [best, *(each.at_speed(relation) for each, relation in zip(some, relations, strict=True))]
+    best, drawn = load_torque_velocity("hill"), drawn_relations("hill", DRAWS, SEED)
+    curves = [load_moments(group), *sampled_moments(group, DRAWS)]
+    return [curve.at_speed(relation) for curve, relation in zip(curves, [best, *drawn], strict=True)]
 
 
 def _riding(design: Design, group: str, muscles: list[JointMoments], transmission: str) -> Riding:
@@ -92,7 +86,7 @@ def _riding(design: Design, group: str, muscles: list[JointMoments], transmissio
             [*threads.map(_solved, level)],
             [*threads.map(_solved, uphill)],
             [*threads.map(lambda ride: starts(ride, ANGLES), brief)],
-            {each: [_speed(trace) or 0.0 for trace in threads.map(_solved, some)] for each, some in geared.items()},
+            {each: [trace.mean_speed or 0.0 for trace in threads.map(_solved, some)] for each, some in geared.items()},
         )
 
 
@@ -105,18 +99,14 @@ def _solved(ride: Ride) -> Trace:
     return reduced.ride(ride, compiled=True)
 
 
-def _speed(trace: Trace) -> float | None:
-    return trace.mean_speed
-
-
 def speed_table(found: list[Riding]) -> Table:
     """What each settles to on the flat, and whether it rides on the slope that its mean power balances."""
     rows = [
         (
             *_names(each),
-            _with_scatter(each, lambda trace: trace.mean_speed and trace.mean_speed / KMH, each.flat),
-            _with_scatter(each, lambda trace: trace.cadence and trace.cadence / RPM, each.flat, 0),
-            _with_scatter(each, lambda trace: trace.ripple and 100 * trace.ripple, each.flat),
+            _with_scatter(lambda trace: trace.mean_speed and trace.mean_speed / KMH, each.flat),
+            _with_scatter(lambda trace: trace.cadence and trace.cadence / RPM, each.flat, 0),
+            _with_scatter(lambda trace: trace.ripple and 100 * trace.ripple, each.flat),
             100 * each.flat[0].coasting_share,
             100 * each.slope,
             "rides" if each.uphill[0].rides else f"stops after {each.uphill[0].stopped_at:.0f} s",
@@ -132,9 +122,9 @@ def start_table(found: list[Riding]) -> Table:
     rows = [
         (
             *_names(each),
-            _with_scatter(each, lambda one: 100 * one.share, each.starts, 0),
-            _with_scatter(each, lambda one: None if one.launch is None else one.launch / KMH, each.starts),
-            _with_scatter(each, lambda one: None if one.slope is None else 100 * one.slope, each.starts),
+            _with_scatter(lambda one: 100 * one.share, each.starts, 0),
+            _with_scatter(lambda one: None if one.launch is None else one.launch / KMH, each.starts),
+            _with_scatter(lambda one: None if one.slope is None else 100 * one.slope, each.starts),
         )
         for each in found
     ]
@@ -177,7 +167,8 @@ def _names(each: Riding) -> tuple[str, str, str]:
     return each.design.name.upper(), each.group, each.transmission
 
 
-def _with_scatter(each: Riding, of: Callable[[Any], float | None], rides: Sequence[Any], digits: int = 1) -> str | None:
-    """The best known value and the standard deviation of those drawn; None without the one."""
-    best, drawn = of(rides[0]), each.values(of, rides[1:])
-    return None if best is None else with_sd(best, float(np.std(drawn, ddof=1)) if len(drawn) > 1 else None, digits)
+def _with_scatter(of: Callable[[Any], float | None], rides: Sequence[Any], digits: int = 1) -> str | None:
+    """The value of the best known muscles and the standard deviation of those drawn; None without the one."""
+    best, *drawn = map(of, rides)
+    known = [value for value in drawn if value is not None]
+    return None if best is None else with_sd(best, float(np.std(known, ddof=1)) if len(known) > 1 else None, digits)
