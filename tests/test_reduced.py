@@ -7,11 +7,12 @@ import numpy as np
 import pytest
 
 import fes_mj
-from fes_mj import kinematics, reduced
+from fes_mj import kinematics, reduced, reduced_solver
 from fes_mj.design import TWO_LEGS
 from fes_mj.drive import POINTS, drive
 from fes_mj.inverse_dynamics import crank_moment
-from fes_mj.reduced import HEIGHT_RATE, INERTIA, INERTIA_RATE, RECOIL, RECOIL_RATE, leg_table
+from fes_mj.reduced import leg_table
+from fes_mj.reduced_solver import HEIGHT_RATE, INERTIA, INERTIA_RATE, RECOIL, RECOIL_RATE
 from fes_mj.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.ride import Ride, Road, balancing_slope
 from fes_mj.segments import GRAVITY
@@ -93,11 +94,11 @@ def test_on_and_off_the_freewheel_at_half_the_step(monkeypatch: pytest.MonkeyPat
     ride = Ride(fes_mj.load_design("d2"), moments, duration=6.0)
     trace = reduced.ride(ride)
     assert 0.3 < trace.coasting_share < 0.95
-    reduced._interpreted.cache_clear()
-    monkeypatch.setattr(reduced, "STEP_ANGLES", tuple(step / 2 for step in reduced.STEP_ANGLES))
-    monkeypatch.setattr(reduced, "STEP_TIME", reduced.STEP_TIME / 2)
+    reduced_solver.interpreted.cache_clear()
+    monkeypatch.setattr(reduced_solver, "STEP_ANGLES", tuple(step / 2 for step in reduced_solver.STEP_ANGLES))
+    monkeypatch.setattr(reduced_solver, "STEP_TIME", reduced_solver.STEP_TIME / 2)
     finer = reduced.ride(ride)
-    reduced._interpreted.cache_clear()
+    reduced_solver.interpreted.cache_clear()
     assert trace.mean_speed == pytest.approx(finer.mean_speed, rel=1e-4)
 
 

@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple
 from cyclopts import Parameter
 
 from fes_mj.cli.options import MomentsOptions, PrintOptions
-from fes_mj.cli.simulate import check_rows
-from fes_mj.console import conclude, print_table, say
+from fes_mj.cli.simulate import check_rows, conclude_checks
+from fes_mj.cli.static import what_moves
+from fes_mj.console import print_table, say
 from fes_mj.design import TRICYCLE_SPEED, Design
 from fes_mj.design_file import load_design
 from fes_mj.errors import InputError, require_extra
@@ -195,14 +196,9 @@ def ride(
 
 def _print(case: RideCase, starts: Starts | None) -> None:
     ride, run = case.ride, case.simulation.trace
-    relation = ride.moments.torque_velocity
-    about = [
-        f"{ride.design.name}, {ride.design.linkage.architecture.title}",
-        f"{ride.moments.name}{f' with the torque-velocity relation of {relation.name.title()}' if relation else ''}",
-        f"{ride.transmission}{' gear' if ride.fixed else ''}, {100 * ride.road.slope:g} % slope",
-    ]
+    road = f"{ride.transmission}{' gear' if ride.fixed else ''}, {100 * ride.road.slope:g} % slope"
     both = [(name, mine, other) for (name, mine), (_, other) in zip(_rows(run), _rows(case.reference), strict=True)]
-    print_table("; ".join(about), ("", "MuJoCo", "reduced model"), both)
+    print_table(f"{what_moves(ride.design, ride.moments)}; {road}", ("", "MuJoCo", "reduced model"), both)
     print_table("Checks", ("check", "value", "limit", "verdict"), check_rows(case.checks))
     if starts:
         rows = [
@@ -215,11 +211,7 @@ def _print(case: RideCase, starts: Starts | None) -> None:
         say(f"It rides: {_text(run.mean_speed and run.mean_speed / KMH, '.2f')} km/h at the end.", "bold")
     else:
         say(f"It stops after {run.stopped_at:.1f} s and {run.distance.max():.1f} m.", "bold")
-    if case.agrees:
-        conclude(True, "The two solvers agree", ".")
-    else:
-        failed = ", ".join(check.name for check in case.checks if not check.ok)
-        conclude(False, "The two solvers do not agree", f": {failed}; `fes_mj explain CHECK` says more.")
+    conclude_checks("The two solvers", case.checks)
 
 
 def _rows(trace: Trace) -> list[tuple[str, str]]:

@@ -94,6 +94,15 @@ def check_rows(checks: Sequence[Check]) -> list[tuple[str, str, str, Text]]:
     ]
 
 
+def conclude_checks(who: str, checks: Sequence[Check], agreeing: str = "") -> None:
+    """Say whether two ways to the same numbers agree, and what more there is to say if they do."""
+    failed = ", ".join(check.name for check in checks if not check.ok)
+    if failed:
+        conclude(False, f"{who} do not agree", f": {failed}; `fes_mj explain CHECK` says more.")
+    else:
+        conclude(True, f"{who} agree", f"{agreeing}.")
+
+
 def _print(case: Case, verbose: bool) -> None:
     run = case.simulation
     dynamic = (
@@ -121,11 +130,7 @@ def _print(case: Case, verbose: bool) -> None:
         print_table("Constraint forces", ("loop", "mean N", "largest N"), force_rows(run.loop_force))
     for each in case.statics:
         print_notes(each, f"{each.moments.name}: " if len(case.statics) > 1 else "")
-    if case.agrees:
-        conclude(True, "Dynamic and static agree", f": mean power differs by {case.difference_text}.")
-    else:
-        failed = ", ".join(check.name for check in case.checks if not check.ok)
-        conclude(False, "Dynamic and static do not agree", f": {failed}; `fes_mj explain CHECK` says more.")
+    conclude_checks("Dynamic and static", case.checks, f": mean power differs by {case.difference_text}")
 
 
 def _results(case: Case, folder: Path, inputs: Sequence[Path]) -> list[Path]:

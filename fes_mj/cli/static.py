@@ -8,9 +8,11 @@ from cyclopts import Parameter
 
 from fes_mj.cli.options import RunOptions
 from fes_mj.console import conclude, print_table, say
+from fes_mj.design import Design
 from fes_mj.files import json_text
 from fes_mj.geometry import CRANK_ZERO, FROM_TOP, degrees_from_top
 from fes_mj.joint_forces import NET_FORCE, JointForces, KneeLoad, peaks
+from fes_mj.moments import JointMoments
 from fes_mj.statics import QuasiStatic, quasi_static
 from fes_mj.units import RPM
 
@@ -48,10 +50,15 @@ def static(
 
 def heading(result: QuasiStatic, legs: int = 1) -> str:
     """Which design, whose moments, how fast."""
-    kind, relation = result.design.linkage.architecture.title, result.moments.torque_velocity
     which = "one leg" if legs == 1 else "two legs, values of one"
+    return f"{what_moves(result.design, result.moments)}; {result.cadence / RPM:.1f} rpm; {which}"
+
+
+def what_moves(design: Design, moments: JointMoments) -> str:
+    """Which design, whose moments."""
+    relation = moments.torque_velocity
     faster = f" with the torque-velocity relation of {relation.name.title()}" if relation else ""
-    return f"{result.design.name}, {kind}; {result.moments.name}{faster}; {result.cadence / RPM:.1f} rpm; {which}"
+    return f"{design.name}, {design.linkage.architecture.title}; {moments.name}{faster}"
 
 
 def rows(result: QuasiStatic) -> list[tuple[str, str]]:

@@ -1,56 +1,42 @@
-"""The right half of the video: crank power over the turn, dynamic and static, with a cursor that moves."""
+"""Crank power over the turn, dynamic and static, with a cursor that moves: the right half of the video."""
 
 from typing import Any
 
-import matplotlib as mpl
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from PIL import Image, ImageDraw
 
 from fes_mj.arrays import Picture
 from fes_mj.crosscheck import Case
-from fes_mj.style import BAD, COLOURS, FAINT, GOOD, INK, STYLE, literal
+from fes_mj.style import BAD, COLOURS, FAINT, GOOD, literal
 from fes_mj.units import RPM
-from fes_mj.viewing.charts import any_letters, plot_power
-
-_DPI = 100
+from fes_mj.viewing.charts import plot_power
+from fes_mj.viewing.panel import Panel
 
 
 class PowerPanel:
-    """Draws the curves once; each frame is a copy with the cursor at another step."""
+    """The panel of one turn."""
 
     def __init__(self, case: Case, width: int, height: int) -> None:
         run = case.simulation
         steps = len(run.crank_angle) // run.turns
         self._angle = np.degrees(run.crank_angle[:steps]) % 360
         self._power = run.power[:steps]
-        with mpl.rc_context(STYLE), any_letters():
-            figure = Figure(figsize=(width / _DPI, height / _DPI), dpi=_DPI, facecolor="white")
-            canvas = FigureCanvasAgg(figure)
-            self._axes = figure.add_axes((0.14, 0.30, 0.81, 0.49))
-            plot_power(self._axes, case)
-            self._axes.axhline(len(run.legs) * run.power_mean, color=COLOURS["mujoco"], lw=1, ls=":")
-            self._axes.legend(loc="lower left", bbox_to_anchor=(-0.02, 1.0), fontsize=11)
-            _write_facts(figure, case)
-            canvas.draw()  # type: ignore[no-untyped-call]
-        self._background = np.asarray(canvas.buffer_rgba())[..., :3].copy()  # type: ignore[no-untyped-call]
-        self._height = height
+        self._panel = Panel(width, height, lambda figure: [_draw(figure, case)])
 
     def frame(self, step: int) -> Picture:
         """The panel with the cursor at a step of the turn, shape (height, width, 3)."""
-        picture = Image.fromarray(self._background)
-        draw = ImageDraw.Draw(picture)
-        (x, y), (_, bottom), (_, top) = (
-            self._pixel(self._angle[step], power) for power in (self._power[step], *self._axes.get_ylim())
-        )
-        draw.line([(x, bottom), (x, top)], fill=INK, width=2)
-        draw.ellipse([x - 6, y - 6, x + 6, y + 6], fill=COLOURS["mujoco"], outline="white", width=2)
-        return np.asarray(picture)
+        return self._panel.with_cursor(self._angle[step], self._power[step], COLOURS["mujoco"])
 
-    def _pixel(self, angle: float, power: float) -> tuple[float, float]:
-        x, y = self._axes.transData.transform((angle, power))
-        return float(x), self._height - float(y)
+
+def _draw(figure: Figure, case: Case) -> Axes:
+    run = case.simulation
+    axes = figure.add_axes((0.14, 0.30, 0.81, 0.49))
+    plot_power(axes, case)
+    axes.axhline(len(run.legs) * run.power_mean, color=COLOURS["mujoco"], lw=1, ls=":")
+    axes.legend(loc="lower left", bbox_to_anchor=(-0.02, 1.0), fontsize=11)
+    _write_facts(figure, case)
+    return axes
 
 
 def _write_facts(figure: Any, case: Case) -> None:

@@ -1,45 +1,36 @@
-"""The right half of a ride's video: speed and muscle power over time by both solvers, with a cursor that moves."""
+"""Speed and muscle power over time by both solvers, with a cursor that moves: the right half of a ride's video."""
 
-import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from PIL import Image, ImageDraw
 
 from fes_mj.arrays import Picture
 from fes_mj.ride_case import RideCase
-from fes_mj.style import BAD, COLOURS, FAINT, GOOD, INK, STYLE, literal
+from fes_mj.style import BAD, COLOURS, FAINT, GOOD, literal
 from fes_mj.units import KMH
-from fes_mj.viewing.charts import any_letters
+from fes_mj.viewing.panel import Panel
 
-_DPI = 100
 _SMOOTH = 0.02  # s over which power is drawn
 
 
 class RidePanel:
-    """Draws the curves once; each frame is a copy with the cursor at another step."""
+    """The panel of a ride."""
 
     def __init__(self, case: RideCase, end: float, width: int, height: int) -> None:
         """end: s, until which the ride is shown."""
-        self._time, self._height = case.simulation.trace.time, height
-        with mpl.rc_context(STYLE), any_letters():
-            figure = Figure(figsize=(width / _DPI, height / _DPI), dpi=_DPI, facecolor="white")
-            canvas = FigureCanvasAgg(figure)
-            self._axes = [figure.add_axes((0.14, bottom, 0.81, 0.30)) for bottom in (0.53, 0.14)]
-            _plot(case, end, *self._axes)
-            _write_facts(figure, case)
-            canvas.draw()  # type: ignore[no-untyped-call]
-        self._background = np.asarray(canvas.buffer_rgba())[..., :3].copy()  # type: ignore[no-untyped-call]
+        self._time = case.simulation.trace.time
+        self._panel = Panel(width, height, lambda figure: _draw(figure, case, end))
 
     def frame(self, step: int) -> Picture:
         """The panel with the cursor at a step of the ride, shape (height, width, 3)."""
-        picture = Image.fromarray(self._background)
-        draw = ImageDraw.Draw(picture)
-        for axes in self._axes:
-            ends = [axes.transData.transform((self._time[step], y)) for y in axes.get_ylim()]
-            draw.line([(float(x), self._height - float(y)) for x, y in ends], fill=INK, width=2)
-        return np.asarray(picture)
+        return self._panel.with_cursor(self._time[step])
+
+
+def _draw(figure: Figure, case: RideCase, end: float) -> list[Axes]:
+    speed, power = (figure.add_axes((0.14, bottom, 0.81, 0.30)) for bottom in (0.53, 0.14))
+    _plot(case, end, speed, power)
+    _write_facts(figure, case)
+    return [speed, power]
 
 
 def _plot(case: RideCase, end: float, speed: Axes, power: Axes) -> None:

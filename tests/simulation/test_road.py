@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 import fes_mj
-from fes_mj.reduced import INERTIA, RECOIL, leg_table
+from fes_mj.reduced import leg_table
+from fes_mj.reduced_solver import INERTIA, RECOIL
 from fes_mj.ride import Ride, Road
 from fes_mj.simulation.road import build_road_mjcf, compiled_road_loop, ride_on_road
 from fes_mj.torque_velocity import load_torque_velocity
