@@ -16,7 +16,9 @@ from fes_mj.errors import InputError, require_extra
 from fes_mj.files import json_text, make_folder, require_writable
 
 if TYPE_CHECKING:
+    from fes_mj.parallel import Workers
     from fes_mj.sweep.study import Study
+    from fes_mj.sweep.sweep import Sweep
 
 _DEFAULTS = PrintOptions()
 MOST_PLOTTED = 10**6  # points
@@ -66,28 +68,33 @@ def sweep(
     for path, what, suffix in ((csv, "the rows", ".csv"), (plot, "the plot", ".png")):
         if path:
             require_writable(path, what, suffix, sweep.study.files)
-    sweep.claim()
-    finished = sweep.finished()
-    before = sum(len(sweep.study.numbers(chunk)) for chunk in finished)
-    start = time.perf_counter()
-    # each process compiles the loop of a dynamic study, which takes seconds
-    first = ", its loop is compiled first" if sweep.study.analysis == "dynamic" else ""
-    with progress_bar(f"{study.stem}, points{first}", sweep.study.points, options.silent, before) as advance:
-        sweep.run(workers, advance, finished)
-    seconds = time.perf_counter() - start
+    summary = _run(sweep, workers, study.stem, options.silent)
     if csv:
         sweep.write_csv(csv)
     if plot:
         from fes_mj.sweep.plot import write_plot
 
         write_plot(sweep, plot)
-    summary = sweep.summary() | {"found_finished": before, "seconds": seconds}
-    summary["points_per_second"] = (summary["points"] - before) / seconds
     if options.json:
         sys.stdout.write(json_text(summary))
     elif not options.quiet:
         _print(summary, study.stem, sweep.study)
     return 0
+
+
+def _run(sweep: "Sweep", workers: "Workers", name: str, silent: bool) -> dict[str, Any]:
+    """Evaluate what is missing; the result as JSON names and units it."""
+    sweep.claim()
+    finished = sweep.finished()
+    before = sum(len(sweep.study.numbers(chunk)) for chunk in finished)
+    start = time.perf_counter()
+    # each process compiles the loop of a dynamic study, which takes seconds
+    first = ", its loop is compiled first" if sweep.study.analysis == "dynamic" else ""
+    with progress_bar(f"{name}, points{first}", sweep.study.points, silent, before) as advance:
+        sweep.run(workers, advance, finished)
+    seconds = time.perf_counter() - start
+    summary = sweep.summary() | {"found_finished": before, "seconds": seconds}
+    return summary | {"points_per_second": (summary["points"] - before) / seconds}
 
 
 def _require_address(cluster: str) -> None:
