@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from cyclopts import App, CycloptsError
 
 from fes_mj.cli import AGREES, BAD_INPUT, COMMANDS, DISAGREES, INTERRUPTION, MISSING_PART, PURPOSE
-from fes_mj.cli.process import interruption_code
+from fes_mj.cli.process import interruption_behind, interruption_code
 from fes_mj.console import errors
 from fes_mj.errors import InputError, MissingPartError, UnstableError
 from fes_mj.text import printable
@@ -35,13 +35,11 @@ def run(arguments: Sequence[str] | None = None) -> int:
         return _fail(f"{error.filename or 'a file'}: {error.strerror or error}", BAD_INPUT)
     except KeyboardInterrupt as error:
         return _fail(INTERRUPTION, interruption_code(error))
-    except ImportError as error:
-        cause: BaseException | None = error
-        while cause and not isinstance(cause, KeyboardInterrupt):
-            cause = cause.__cause__
-        if cause is None:
+    except Exception as error:
+        interruption = interruption_behind(error)
+        if interruption is None:
             raise
-        return _fail(INTERRUPTION, interruption_code(cause))  # it came while a compiled module was being loaded
+        return _fail(INTERRUPTION, interruption_code(interruption))
 
 
 def _fail(message: object, code: int) -> int:

@@ -62,3 +62,21 @@ def _interrupt(number: int, _: FrameType | None) -> NoReturn:
 def interruption_code(error: BaseException) -> int:
     """Exit code of an interrupted run, as a shell shows it: 130 after Ctrl-C, 143 after SIGTERM, 129 after SIGHUP."""
     return 128 + (error.args[0] if error.args else signal.SIGINT)
+
+
+def interruption_behind(error: BaseException) -> KeyboardInterrupt | None:
+    """The interruption that came while somebody else's code was running, which made another error of it, if any did.
+
+    A compiled module that was being loaded names it as the cause; ctypes, whose arguments were being converted, only in
+    its text.
+    """
+    import re  # help needs neither
+    from ctypes import ArgumentError
+
+    cause: BaseException | None = error
+    while cause:
+        if isinstance(cause, KeyboardInterrupt):
+            return cause
+        cause = cause.__cause__
+    named = re.search(r"KeyboardInterrupt: ?(\d*)", str(error)) if isinstance(error, ArgumentError) else None
+    return KeyboardInterrupt(*map(int, filter(None, named.groups()))) if named else None

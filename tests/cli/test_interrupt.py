@@ -1,5 +1,6 @@
 """Ctrl-C and kill: earlier results stay as they were, nothing is half-written."""
 
+import ctypes
 import os
 import signal
 import subprocess
@@ -98,6 +99,29 @@ def test_a_compiled_module_that_was_being_loaded_counts_as_interrupted(
 
     monkeypatch.setattr(cli, "app", missing)
     with pytest.raises(ImportError, match="no such module"):
+        cli.run(["simulate", "d1"])
+
+
+@pytest.mark.parametrize(("sent", "code"), [((), 130), ((signal.SIGTERM.value,), 143)])
+def test_a_call_into_a_library_that_was_being_made_counts_as_interrupted(
+    sent: tuple[int, ...], code: int, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As OpenGL's are: ctypes makes an error of its own of whatever is raised while it converts arguments."""
+    from fes_mj.cli import app as cli
+
+    class Interrupted:
+        @classmethod
+        def from_param(cls, _: object) -> None:
+            raise KeyboardInterrupt(*sent)
+
+    convert = ctypes.CFUNCTYPE(ctypes.c_int, Interrupted)(lambda _: 0)  # type: ignore[arg-type]
+    monkeypatch.setattr(cli, "app", lambda *_, **__: convert(0))
+    assert cli.run(["simulate", "d1"]) == code
+    assert capsys.readouterr().err == "fes_mj: interrupted; nothing was left half-written\n"
+
+    wrong = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_int)(lambda _: 0)
+    monkeypatch.setattr(cli, "app", lambda *_, **__: wrong("no number"))
+    with pytest.raises(ctypes.ArgumentError):
         cli.run(["simulate", "d1"])
 
 
