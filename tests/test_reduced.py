@@ -123,6 +123,7 @@ def test_the_lagging_answer_is_the_map_where_it_was_measured(lag: float, smooth_
         assert np.abs(filtered - exact).max() < 2e-3 * np.abs(exact).max()
 
 
+@pytest.mark.long
 def test_machine_code_rides_the_same_way() -> None:
     pytest.importorskip("numba")
     moments = replace(fes_mj.load_moments("p1p2"), torque_velocity=load_torque_velocity("hill"))

@@ -39,6 +39,7 @@ def test_not_fitting_is_a_result_and_writes_nothing(tmp_path: Path, capsys: pyte
     assert "it would with a seat that moves farther" in text
 
 
+@pytest.mark.long
 def test_a_population(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("matplotlib")
     monkeypatch.setattr("fes_mj.population._NODES", 3)  # a coarse map, in a second

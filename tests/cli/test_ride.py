@@ -85,6 +85,7 @@ def test_own_moments_without_a_cadence(capsys: pytest.CaptureFixture[str], tmp_p
         assert ("depends on the cadence they were measured at" in err) == (code == 2)
 
 
+@pytest.mark.long
 def test_starts(capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("numba")
     pytest.importorskip("matplotlib")

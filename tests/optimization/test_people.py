@@ -34,6 +34,7 @@ def feasible(problem: Problem) -> np.ndarray:
     return x
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", SIX_BARS)
 def test_few_riders_stand_for_a_sample(name: str) -> None:
     """Mean and 10th percentile of the power in best seats, against a seat sought for every other of 80 people.

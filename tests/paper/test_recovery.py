@@ -28,6 +28,7 @@ def test_what_ships_fulfils_what_was_said(facts: Known) -> None:
             assert row["with the text"] == "1.00 +- 0.00"
 
 
+@pytest.mark.long
 def test_tables_of_calibration_agree(facts: Known) -> None:
     chosen = sensitivity_table(facts, {}).records()[0]
     by_group = {row["group"]: row for row in calibration_table(facts).records()}
