@@ -7,7 +7,6 @@ from fes_mj.cli.process import interruption_code, prepare
 from fes_mj.errors import InputError
 
 AGREES, DISAGREES, BAD_INPUT, MISSING_PART = 0, 1, 2, 3
-INTERRUPTION = "interrupted; nothing was left half-written"
 PURPOSE = "Does a pedalling linkage for FES cycling deliver its power when legs have mass and loops must close?"
 # The help lines stand here so that `--help` need not import the commands, nor anything else.
 EXIT_CODES = "Exit codes: 0 agrees, 1 does not, 2 bad input, 3 a needed part is missing, 130 Ctrl-C, 143 SIGTERM."
@@ -33,12 +32,12 @@ def main() -> None:
     try:
         prepare()
         sys.exit(_run(sys.argv[1:]))
-    except InputError as error:
-        print(f"fes_mj: {error}", file=sys.stderr)
-        sys.exit(BAD_INPUT)
-    except KeyboardInterrupt as error:
-        print(f"fes_mj: {INTERRUPTION}", file=sys.stderr)
-        sys.exit(interruption_code(error))
+    except (KeyboardInterrupt, Exception) as error:
+        code = interruption_code(error)
+        if code is None and not isinstance(error, InputError):
+            raise
+        print(f"fes_mj: {error if code is None else 'interrupted; nothing was left half-written'}", file=sys.stderr)
+        sys.exit(BAD_INPUT if code is None else code)
 
 
 def _run(arguments: list[str]) -> int:

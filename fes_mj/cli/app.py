@@ -5,12 +5,19 @@ from collections.abc import Sequence
 
 from cyclopts import App, CycloptsError
 
-from fes_mj.cli import AGREES, BAD_INPUT, COMMANDS, DISAGREES, INTERRUPTION, MISSING_PART, PURPOSE
-from fes_mj.cli.process import interruption_behind, interruption_code
+from fes_mj.cli import AGREES, BAD_INPUT, COMMANDS, DISAGREES, MISSING_PART, PURPOSE
+from fes_mj.cli.process import interruption_code
 from fes_mj.console import errors
 from fes_mj.errors import InputError, MissingPartError, UnstableError
 from fes_mj.text import printable
 
+EXPECTED = {
+    CycloptsError: BAD_INPUT,
+    InputError: BAD_INPUT,
+    OSError: BAD_INPUT,
+    MissingPartError: MISSING_PART,
+    UnstableError: DISAGREES,
+}
 LONGEST_MESSAGE = 1000  # characters
 
 app = App(name="fes_mj", help=PURPOSE, suppress_keyboard_interrupt=False)
@@ -25,26 +32,16 @@ def run(arguments: Sequence[str] | None = None) -> int:
         code = app(arguments, exit_on_error=False, print_error=False, result_action="return_value")
         sys.stdout.flush()
         return code if isinstance(code, int) else AGREES
-    except (CycloptsError, InputError) as error:
-        return _fail(error, BAD_INPUT)
-    except MissingPartError as error:
-        return _fail(error, MISSING_PART)
-    except UnstableError as error:
-        return _fail(error, DISAGREES)
-    except OSError as error:
-        return _fail(f"{error.filename or 'a file'}: {error.strerror or error}", BAD_INPUT)
-    except KeyboardInterrupt as error:
-        return _fail(INTERRUPTION, interruption_code(error))
     except Exception as error:
-        interruption = interruption_behind(error)
-        if interruption is None:
+        code = next((code for kind, code in EXPECTED.items() if isinstance(error, kind)), None)
+        if code is None or interruption_code(error) is not None:
             raise
-        return _fail(INTERRUPTION, interruption_code(interruption))
+        _say(f"{error.filename or 'a file'}: {error.strerror or error}" if isinstance(error, OSError) else error)
+        return code
 
 
-def _fail(message: object, code: int) -> int:
+def _say(message: object) -> None:
     text = printable(str(message))
     if len(text) > LONGEST_MESSAGE:  # quoted input can be as long as the file
         text = f"{text[: LONGEST_MESSAGE // 2]} ... {text[-LONGEST_MESSAGE // 2 :]}"
     errors.print(f"fes_mj: {text}", soft_wrap=True)
-    return code

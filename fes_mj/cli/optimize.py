@@ -76,11 +76,12 @@ def optimize(
 
             write_text(report, page_html(winner, outcome, origin))
             files["report"] = str(report)
-    except KeyboardInterrupt as error:
-        if not (findings and findings.best):
+    except (KeyboardInterrupt, Exception) as error:
+        code = interruption_code(error)
+        if code is None or not (findings and findings.best):
             raise
         _print_saved(problem, findings.best[1], findings.so_far)
-        return interruption_code(error)
+        return code
     if findings:
         findings.remove()
     if options.json:

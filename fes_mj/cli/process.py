@@ -49,34 +49,30 @@ def prepare() -> None:
             os.open(os.devnull, os.O_RDWR)
     sys.stdout = Stream(sys.stdout or os.fdopen(1, "w", encoding="utf-8"), "standard output")
     sys.stderr = Stream(sys.stderr or os.fdopen(2, "w", encoding="utf-8"))
-    for name in ("SIGTERM", "SIGHUP"):
+    for name, default in (
+        ("SIGINT", signal.default_int_handler),
+        ("SIGTERM", signal.SIG_DFL),
+        ("SIGHUP", signal.SIG_DFL),
+    ):
         kind = getattr(signal, name, None)
-        if kind and signal.getsignal(kind) is signal.SIG_DFL:  # `nohup` ignores one
+        if kind and signal.getsignal(kind) is default:  # `nohup` ignores one
             signal.signal(kind, _interrupt)
 
 
+_received: list[int] = []  # signals that were to end the process
+
+
 def _interrupt(number: int, _: FrameType | None) -> NoReturn:
+    _received.append(number)
     raise KeyboardInterrupt(number)
 
 
-def interruption_code(error: BaseException) -> int:
-    """Exit code of an interrupted run, as a shell shows it: 130 after Ctrl-C, 143 after SIGTERM, 129 after SIGHUP."""
-    return 128 + (error.args[0] if error.args else signal.SIGINT)
+def interruption_code(error: BaseException) -> int | None:
+    """Exit code of a run that a signal ended with this error, as a shell shows it: 130 after Ctrl-C, 143 after SIGTERM.
 
-
-def interruption_behind(error: BaseException) -> KeyboardInterrupt | None:
-    """The interruption that came while somebody else's code was running, which made another error of it, if any did.
-
-    A compiled module that was being loaded names it as the cause; ctypes, whose arguments were being converted, only in
-    its text.
+    Compiled code that was loading a module or converting arguments makes an error of its own of KeyboardInterrupt, so
+    whatever is raised after a signal was caused by it. None for an error that no signal caused.
     """
-    import re  # help needs neither
-    from ctypes import ArgumentError
-
-    cause: BaseException | None = error
-    while cause:
-        if isinstance(cause, KeyboardInterrupt):
-            return cause
-        cause = cause.__cause__
-    named = re.search(r"KeyboardInterrupt: ?(\d*)", str(error)) if isinstance(error, ArgumentError) else None
-    return KeyboardInterrupt(*map(int, filter(None, named.groups()))) if named else None
+    if isinstance(error, KeyboardInterrupt):
+        return 128 + (error.args[0] if error.args else signal.SIGINT)
+    return 128 + _received[0] if _received else None

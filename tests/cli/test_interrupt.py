@@ -1,6 +1,5 @@
 """Ctrl-C and kill: earlier results stay as they were, nothing is half-written."""
 
-import ctypes
 import os
 import signal
 import subprocess
@@ -14,6 +13,26 @@ pytestmark = pytest.mark.skipif(not Path("/proc/self/maps").exists(), reason="lo
 PATIENCE = 60  # s
 # A shell shows 130 for both: Python ends by the signal itself if it came while a text was being executed.
 INTERRUPTED = (130, -signal.SIGINT)
+# argv: an error, a signal's number (0 for none), and a command line
+WRAPS = """
+import ctypes, signal, sys
+from fes_mj import cli
+from fes_mj.cli import app
+from fes_mj.errors import InputError
+
+kind, number = eval(sys.argv[1]), int(sys.argv[2])
+del sys.argv[1:3]
+
+def wraps(*_, **__):
+    try:
+        number and signal.raise_signal(number)
+    except KeyboardInterrupt:
+        pass
+    raise kind("as others would say it")
+
+app.app = wraps
+cli.main()
+"""
 
 
 def _run(*arguments: str) -> None:
@@ -79,50 +98,25 @@ def test_a_kill_in_the_middle_of_writing_leaves_the_old_file(tmp_path: Path) -> 
     assert target.read_text() == "old"
 
 
-def test_a_compiled_module_that_was_being_loaded_counts_as_interrupted(
-    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    from fes_mj.cli import app as cli
-
-    def loading(*_: object, **__: object) -> None:
-        try:
-            raise ImportError("initialization failed") from KeyboardInterrupt()
-        except ImportError as error:
-            raise ImportError("initialization failed") from error
-
-    monkeypatch.setattr(cli, "app", loading)
-    assert cli.run(["simulate", "d1"]) == 130
-    assert capsys.readouterr().err == "fes_mj: interrupted; nothing was left half-written\n"
-
-    def missing(*_: object, **__: object) -> None:
-        raise ImportError("no such module")
-
-    monkeypatch.setattr(cli, "app", missing)
-    with pytest.raises(ImportError, match="no such module"):
-        cli.run(["simulate", "d1"])
+@pytest.mark.parametrize("error", ["ImportError", "ctypes.ArgumentError", "InputError", "OSError"])
+@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_an_error_that_somebody_made_of_an_interruption_is_one(how: signal.Signals, error: str) -> None:
+    """A compiled module that is being loaded makes another error of it, and so does ctypes of its arguments."""
+    done = subprocess.run(
+        [sys.executable, "-c", WRAPS, error, str(int(how)), "simulate", "d1"],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (done.returncode, done.stderr) == (128 + how, "fes_mj: interrupted; nothing was left half-written\n")
 
 
-@pytest.mark.parametrize(("sent", "code"), [((), 130), ((signal.SIGTERM.value,), 143)])
-def test_a_call_into_a_library_that_was_being_made_counts_as_interrupted(
-    sent: tuple[int, ...], code: int, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """As OpenGL's are: ctypes makes an error of its own of whatever is raised while it converts arguments."""
-    from fes_mj.cli import app as cli
-
-    class Interrupted:
-        @classmethod
-        def from_param(cls, _: object) -> None:
-            raise KeyboardInterrupt(*sent)
-
-    convert = ctypes.CFUNCTYPE(ctypes.c_int, Interrupted)(lambda _: 0)  # type: ignore[arg-type]
-    monkeypatch.setattr(cli, "app", lambda *_, **__: convert(0))
-    assert cli.run(["simulate", "d1"]) == code
-    assert capsys.readouterr().err == "fes_mj: interrupted; nothing was left half-written\n"
-
-    wrong = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_int)(lambda _: 0)
-    monkeypatch.setattr(cli, "app", lambda *_, **__: wrong("no number"))
-    with pytest.raises(ctypes.ArgumentError):
-        cli.run(["simulate", "d1"])
+def test_an_error_without_a_signal_stays_what_it_is() -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", WRAPS, "ImportError", "0", "simulate", "d1"], capture_output=True, check=False
+    )
+    assert done.returncode == 1
+    assert done.stderr.endswith(b"ImportError: as others would say it\n")
 
 
 @pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
