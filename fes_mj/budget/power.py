@@ -30,6 +30,8 @@ from fes_mj.kinematics import Motion
 from fes_mj.statics import QuasiStatic
 from fes_mj.variables import replaced
 
+# Over the angles of SCAN; against twenty times as many a power changes by less than 0.02 W rms, and with a lag, which
+# filters the jumps of the torque map, by less than 0.2 W.
 TABLE = 360  # crank angles of the measurement, between which moments are interpolated linearly
 BLOCK = 1000  # rows at once: their arrays take some ten megabytes
 _TURN = np.arange(TABLE) * (2 * np.pi / TABLE)

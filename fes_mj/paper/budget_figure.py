@@ -20,13 +20,14 @@ def budget_figure(found: Budgets) -> Figure:
     axes: Any = figure.subplots(2, 2, sharey="row")
     for ax, group in zip(axes[0], GROUPS, strict=True):
         _bars(ax, found, group)
-        ax.set_title(f"{group.upper()}, with speed dependence", loc="left", fontsize=9, weight="bold")
+        ax.set_title(f"{group.upper()}, lag and speed dependence", loc="left", fontsize=9, weight="bold")
     axes[0, 0].set_ylabel("share of the variance, %")
     axes[0, 1].legend(loc="center left", bbox_to_anchor=(1.0, 0.5), reverse=True)
     for ax, group in zip(axes[1], GROUPS, strict=True):
         _curves(ax, found, group)
         ax.set_title(f"{group.upper()}, power per TRT's", loc="left", fontsize=9, weight="bold")
-        ax.set(xlabel="ratio", xlim=(0.2, 2.8), ylim=(0, 103))
+        ax.set(xlabel="ratio", xlim=(0.2, 2.8), ylim=(0, 103), xticks=[0.5, 1, *GAINS, 2.5])
+        ax.tick_params(axis="x", labelsize=7)
     axes[1, 0].set_ylabel("probability of more, %")
     axes[1, 1].legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
     return figure
@@ -48,7 +49,7 @@ def _bars(ax: Axes, found: Budgets, group: str) -> None:
 def _curves(ax: Axes, found: Budgets, group: str) -> None:
     """Of every six-bar, with speed dependence and, dashed, as in the paper."""
     for name, colour in zip(SIX_BARS, PARTS, strict=False):
-        for case, style, words in ((FULL, "-", "with speed dependence"), (FREE, "--", "as the paper")):
+        for case, style, words in ((FULL, "-", "lag and speed dependence"), (FREE, "--", "as the paper")):
             ratio = np.sort(np.nan_to_num(ratios(found, name, group, case), nan=-np.inf))  # beats nothing
             above = 100 * (1 - np.searchsorted(ratio, _RATIOS, side="right") / ratio.size)
             ax.plot(_RATIOS, above, style, color=colour, label=f"{name.upper()}, {words}")

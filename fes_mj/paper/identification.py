@@ -103,7 +103,7 @@ def inside_rounding(
     """Linkages drawn evenly around the print that move as Table 1 says, by component, shape (linkages,) each.
 
     half_widths: by component (fes_mj.variables), in the unit of files, how far it may be from the print. At most
-    `wanted` linkages: those that turn out not to close are left out.
+    `wanted` linkages: those of which a finer turn says otherwise are left out.
     """
     printed, target = load_design(name, "printed"), table1()[name]
     wanted_ranges = (*target.knee_range, *target.hip_range)
@@ -112,18 +112,16 @@ def inside_rounding(
         for each in ([component(printed, key) for key in half_widths], [*half_widths.values()])
     )
 
-    def ranges(drawn: FloatArray, points: FloatArray) -> FloatArray:
-        return joint_ranges(replaced(printed, dict(zip(half_widths, drawn, strict=True))), points)
+    def moving_so(drawn: FloatArray, points: FloatArray) -> FloatArray:
+        ranges = joint_ranges(replaced(printed, dict(zip(half_widths, drawn, strict=True))), points)
+        return drawn[:, np.all(np.abs(ranges - wanted_ranges) < 0.5, axis=1)]
 
-    accepted = np.empty((len(half_widths), 0, 1))
+    accepted: FloatArray = np.empty((len(half_widths), 0, 1))
     while accepted.shape[1] < wanted:
         drawn = middle + half * random.uniform(-1, 1, (len(half_widths), batch, 1))
-        error = np.abs(ranges(drawn, FULL_TURN[::8]) - wanted_ranges)
-        accepted = np.hstack([accepted, drawn[:, np.all(error < 0.5, axis=1)]])
-    accepted = accepted[:, :wanted]
-    # the coarse turn may have stepped over an angle at which the linkage does not close
-    closing = np.all(np.isfinite(ranges(accepted, FULL_TURN)), axis=1)
-    return dict(zip(half_widths, accepted[:, closing, 0], strict=True))
+        accepted = np.hstack([accepted, moving_so(drawn, FULL_TURN[::8])])
+    accepted = moving_so(accepted[:, :wanted], FULL_TURN)  # the coarse turn may have stepped over an extreme
+    return dict(zip(half_widths, accepted[..., 0], strict=True))
 
 
 def _candidates(printed: Design, seat_angle: float, coupler_angle: float) -> Callable[[FloatArray], Design]:
