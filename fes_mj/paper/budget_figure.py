@@ -12,6 +12,7 @@ from fes_mj.paper.printed import SIX_BARS
 from fes_mj.style import PARTS
 
 _RATIOS = np.linspace(0, 3, 301)
+_TICKS = (0.5, 1.0, *GAINS, 2.5)
 
 
 def budget_figure(found: Budgets) -> Figure:
@@ -20,14 +21,14 @@ def budget_figure(found: Budgets) -> Figure:
     axes: Any = figure.subplots(2, 2, sharey="row")
     for ax, group in zip(axes[0], GROUPS, strict=True):
         _bars(ax, found, group)
-        ax.set_title(f"{group.upper()}, lag and speed dependence", loc="left", fontsize=9, weight="bold")
+        ax.set_title(f"{group.upper()}, everything drawn", loc="left", fontsize=9, weight="bold")
     axes[0, 0].set_ylabel("share of the variance, %")
     axes[0, 1].legend(loc="center left", bbox_to_anchor=(1.0, 0.5), reverse=True)
     for ax, group in zip(axes[1], GROUPS, strict=True):
         _curves(ax, found, group)
         ax.set_title(f"{group.upper()}, power per TRT's", loc="left", fontsize=9, weight="bold")
-        ax.set(xlabel="ratio", xlim=(0.2, 2.8), ylim=(0, 103), xticks=[0.5, 1, *GAINS, 2.5])
-        ax.tick_params(axis="x", labelsize=7)
+        ax.set(xlabel="ratio", xlim=(0.2, 2.8), ylim=(0, 103), xticks=_TICKS)
+        ax.set_xticklabels([f"{tick:g}" for tick in _TICKS], fontsize=7)
     axes[1, 0].set_ylabel("probability of more, %")
     axes[1, 1].legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
     return figure
