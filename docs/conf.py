@@ -6,9 +6,16 @@ project = "fes_mj"
 release = importlib.metadata.version("fes-mj")
 copyright = "MIT licence"  # noqa: A001
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.autosummary", "sphinx.ext.napoleon", "sphinx.ext.viewcode"]
+extensions = [
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.autosummary",
+    "sphinx.ext.napoleon",
+    "sphinx.ext.viewcode",
+]
 root_doc = "docs/index"
 include_patterns = ["*.md", "docs/**", "results/**.md", "mjcf/**.md", "examples/**.md"]
+exclude_patterns = ["docs/templates"]
 templates_path = ["templates"]
 html_additional_pages = {"index": "to_readme.html"}
 
