@@ -50,7 +50,7 @@ def measured(name: str) -> dict[str, Any]:
     step = case.cadence * case.simulation.timestep
     rms, predicted = case.rms_per_leg(case.simulation), predicted_errors(design, case.cadence, step).inverse_dynamics
     with patch.object(stepping, "LOOP_SOFTNESS", 1.0):
-        soft, default = case.run(), case.run(edit=_default_loops)
+        soft, default = case.run(), _DefaultLoops(design, moments).run()
     with patch.object(mjcf, "SERVO_GAIN", 1e6):
         weak, slow = case.run(), Case(design, moments, SLOW * RPM).simulation
     slower, stiff = (case.run(timestep=FINE, loop_solref=(constant, 1.0)) for constant in (1e-5, 1e-7))
@@ -72,10 +72,12 @@ def measured(name: str) -> dict[str, Any]:
     }
 
 
-def _default_loops(spec: Any) -> None:
-    """What MuJoCo takes for a constraint that says nothing."""
-    for loop in spec.equalities:
-        loop.solref, loop.solimp = [0.02, 1.0], [0.9, 0.95, 0.001, 0.5, 2.0]
+class _DefaultLoops(Case):
+    """With what MuJoCo takes for a constraint that says nothing."""
+
+    def edit_model(self, spec: Any) -> None:
+        for loop in spec.equalities:
+            loop.solref, loop.solimp = [0.02, 1.0], [0.9, 0.95, 0.001, 0.5, 2.0]
 
 
 def plain_loop(torque: TorqueMap, drives: dict[str, str]) -> Loop:
