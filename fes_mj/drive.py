@@ -60,7 +60,7 @@ def drive(design: Design, moments: JointMoments, lag: float = 0.0) -> Drive:
 def commanded(
     moment: FloatArray, relation: TorqueVelocity | None, joint: str, speed: FloatArray, lag_angle: Any
 ) -> FloatArray:
-    """Command over a turn of the tricycle of the measurement, N m: the moment at rest of which a lag makes the moment.
+    """Command over a turn of the tricycle of the measurement, N m, to which muscles with a lag answer with `moment`.
 
     moment: N m, and speed: rad/s, of the joint there, over uniform crank angles along the last axis. lag_angle: what
     that crank turns in the time constant of the lag, rad.

@@ -15,6 +15,8 @@ from fes_mj.arrays import FloatArray
 from fes_mj.design import Design
 from fes_mj.design_file import identified_draws, load_design
 from fes_mj.files import read_toml
+from fes_mj.joints import JOINTS
+from fes_mj.kinematics import FULL_TURN
 from fes_mj.moment_samples import sampled_coefficients
 from fes_mj.moments import GROUPS, JointMoments
 from fes_mj.moments_file import load_moments
@@ -55,7 +57,7 @@ def realisations(design: Design, moments: JointMoments, count: int) -> Realisati
     legs = {name: component(design, name) + error for name, error in zip(("thigh", "shank"), errors, strict=True)}
     drifts = random.standard_normal((count, ZONES))
     return Realisations(
-        _coefficients(moments, count), _dimensions(design, count), _relations(count), lags, legs, drifts
+        _coefficients(moments, count), _dimensions(design, count), _relations(moments, count), lags, legs, drifts
     )
 
 
@@ -70,8 +72,17 @@ def priors() -> dict[str, dict[str, Any]]:
     return dict(read_toml(_FILE, "priors of the error budget").content)
 
 
+def _relations(moments: JointMoments, count: int) -> TorqueVelocity:
+    """Of those drawn the ones with which the joints could have moved as fast as they did in the measurement."""
+    drawn, reference = _drawn_relations(count), moments.measured_on
+    rates = reference.joint_rates(FULL_TURN)
+    fastest = {joint: np.asarray(speed)[:, 0] for joint, speed in drawn.max_speed.items()}
+    fast = [fastest[joint] > reference.cadence * np.abs(rates[joint]).max() for joint in JOINTS]
+    return drawn.taken(_spread(np.flatnonzero(np.logical_and.reduce(fast)), count))
+
+
 @cache
-def _relations(count: int) -> TorqueVelocity:
+def _drawn_relations(count: int) -> TorqueVelocity:
     return stacked(drawn_relations(prior(SPEED)["relation"], count, _SEED))
 
 
@@ -98,7 +109,7 @@ def _dimensions(design: Design, count: int) -> dict[str, FloatArray]:
     return {name: size + random.uniform(-half_digit, half_digit, count) for name, size in sizes.items()}
 
 
-def _spread(sample: FloatArray, count: int) -> FloatArray:
+def _spread(sample: Any, count: int) -> FloatArray:
     """So many of a sample whose members are independent, evenly from the first to the last."""
     return np.asarray(sample[np.linspace(0, len(sample) - 1, count).astype(int)])
 
