@@ -35,6 +35,7 @@ benchmark: $(VENV)/.ready
 	$(BIN)/python -m tools.benchmark_exudyn
 	$(BIN)/python -m tools.benchmark_optimization
 	$(BIN)/python -m tools.benchmark_ride
+	$(BIN)/python -m tools.benchmark_video
 
 # Every check on every design, refined, with all faults injected: results/verification.md; every ride by both solvers:
 # results/ride_verification.md
