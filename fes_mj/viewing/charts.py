@@ -96,7 +96,7 @@ def plot_residual(axes: Axes, case: Case) -> None:
     missed = 1e3 * (run.power - case.reference_power())[turn]
     axes.plot(*over_turn(run.crank_angle[turn], missed), color=COLOURS["mujoco"])
     turn_axis(axes)
-    axes.set_ylabel("MuJoCo - exact, mW")
+    axes.set_ylabel("MuJoCo less\nexact, mW")
 
 
 def draw_linkage(axes: Axes, design: Design, crank_angle: float, paths: Sequence[str] = ("pedal", "knee")) -> None:

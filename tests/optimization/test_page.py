@@ -14,7 +14,7 @@ from fes_mj.optimization.pareto import Front, fluctuation
 from fes_mj.optimization.winner import assess
 from fes_mj.statics import quasi_static
 from fes_mj.style import LINKS
-from tests.browser import NEEDS_BROWSER, PHONE, browser
+from tests.browser import NEEDS_BROWSER, PHONE, browser, check_on_a_phone
 from tests.optimization.conftest import problem_of
 
 pytest.importorskip("jinja2")
@@ -81,20 +81,16 @@ class TestOnAPhone:
 
     pytestmark = NEEDS_BROWSER
 
-    def test_plots_fill_the_width_and_tables_scroll_in_their_boxes(
-        self, browser: Any, html: str, tmp_path: Path
-    ) -> None:
-        file = tmp_path / "page.html"
-        file.write_text(html, encoding="utf-8")
+    def test_the_page_fits(self, browser: Any, html: str, tmp_path: Path) -> None:
+        (file := tmp_path / "page.html").write_text(html, encoding="utf-8")
+        check_on_a_phone(browser, file)
+
+    def test_every_number_is_seen_without_scrolling(self, browser: Any, html: str, tmp_path: Path) -> None:
+        (file := tmp_path / "page.html").write_text(html, encoding="utf-8")
         width, height = PHONE
         page = browser.new_page(viewport={"width": width, "height": height})
         page.goto(file.as_uri())
-        assert page.evaluate("document.documentElement.scrollWidth") == width
-        for plot in page.locator("svg").all():
-            assert plot.bounding_box()["width"] > 0.85 * width
-            sizes = plot.evaluate("svg => [...svg.querySelectorAll('text')].map(t => t.getBoundingClientRect().height)")
-            assert min(size for size in sizes if size) > 8  # pixels
-        first = page.locator("table").first.locator("td:nth-child(2)")
-        boxes = [cell.bounding_box() for cell in first.all()]
-        assert all(box["x"] + box["width"] <= width for box in boxes)  # every number is seen without scrolling
+        boxes = [cell.bounding_box() for cell in page.locator("table").first.locator("td:nth-child(2)").all()]
+        assert len(boxes) > 10
+        assert all(box["x"] + box["width"] <= width for box in boxes)
         page.close()
