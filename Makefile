@@ -2,10 +2,10 @@
 PYTHON ?= python3
 VENV ?= .venv
 BIN = $(VENV)/bin
-EVERYTHING = video,optimize,cluster,report,test,lint
+EVERYTHING = video,optimize,cluster,report,docs,test,lint
 PYTEST = $(BIN)/python -m pytest --numprocesses auto --dist worksteal
 
-.PHONY: demo test test-long lint format benchmark catalogue reproduce verification models readers clean
+.PHONY: demo test test-long lint docs format benchmark catalogue reproduce verification models readers clean
 
 demo: $(VENV)/.for-demo
 	mkdir -p demo
@@ -23,6 +23,10 @@ lint: $(VENV)/.ready
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+
+# The site, in site/: README, tutorials, results, and a page for each module; a link that leads nowhere stops it.
+docs: $(VENV)/.ready
+	$(BIN)/python -m sphinx -c docs -b html --fail-on-warning --keep-going --quiet . site
 
 format: $(VENV)/.ready
 	$(BIN)/ruff format .
@@ -72,4 +76,4 @@ $(VENV)/.for-demo $(VENV)/.ready: pyproject.toml constraints.txt
 	touch $@
 
 clean:
-	rm -rf $(VENV) .readers demo
+	rm -rf $(VENV) .readers demo site docs/reference

@@ -34,6 +34,7 @@ SAMPLES, SAMPLE_SEED = 1000, 0
 SEARCHES, BUDGET, WORKERS = 3, 25_000, Workers(jobs=2)
 TARGETS = ("r1", "d1")
 STATISTICS = {"population": "the mean", "population-p10": "the 10th percentile"}
+AT_PIN = 0.005  # m, half the print's last digit
 VARIED = tuple(name for name, (variable, _) in COMPONENTS.items() if variable.owner == "linkage")
 
 
@@ -130,6 +131,7 @@ def markdown(found: dict[str, list[Row]]) -> str:
         Table("What people get", COLUMNS, [_cells(each) for each in every]).markdown().strip(),
         "## What the successors gain and lose",
         "\n".join(line for group in found.values() for line in _gains(group)),
+        _degenerate([each.design for each in every]),
         Table(
             "Dimensions",
             dimensions,
@@ -190,6 +192,13 @@ def _gains(group: list[Row]) -> list[str]:
             "rider."
         )
     return lines
+
+
+def _degenerate(designs: list[Design]) -> str:
+    close = [
+        f"{each.name} ({component(each, 'R8') * 1e3:.1f} mm)" for each in designs if component(each, "R8") < AT_PIN
+    ]
+    return "Pedal practically on the rocker joint, so that the coupler no longer drives it: " + ", ".join(close) + "."
 
 
 def main() -> None:

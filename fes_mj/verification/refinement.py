@@ -93,7 +93,7 @@ class Refinement:
 
 
 def observed_order(sizes: list[float], errors: list[float]) -> float:
-    """Slope of log |error| over log size, by least squares; NaN for errors that have no logarithm."""
+    """Slope of log error over log size, by least squares; NaN for errors that have no logarithm."""
     if not (np.isfinite(errors).all() and np.all(errors)):
         return math.nan
     return float(np.polyfit(np.log(sizes), np.log(np.abs(errors)), 1)[0])
