@@ -5,7 +5,7 @@ BIN = $(VENV)/bin
 EVERYTHING = video,optimize,cluster,report,docs,test,lint
 PYTEST = $(BIN)/python -m pytest --numprocesses auto --dist worksteal
 
-.PHONY: demo test test-long lint docs format benchmark catalogue reproduce verification models readers clean
+.PHONY: demo test test-long lint docs format benchmark catalogue reproduce verification models pictures readers clean
 
 demo: $(VENV)/.for-demo
 	mkdir -p demo
@@ -59,6 +59,13 @@ reproduce: $(VENV)/.ready
 # The exported models of the five designs, in mjcf/.
 models: $(VENV)/.ready
 	$(BIN)/python tools/make_models.py
+
+# Every picture of README, docs, mjcf/ and results/ again; the last from results/optimization/ripple.json.
+pictures: $(VENV)/.ready reproduce
+	$(BIN)/python tools/make_models.py --pictures
+	$(BIN)/python -m tools.picture_demo
+	$(BIN)/python -m tools.picture_explore
+	$(BIN)/python -m tools.power_and_ripple --picture
 
 # Install the other readers of the models, each into an environment of its own, and compare them with MuJoCo.
 readers: $(VENV)/.ready

@@ -1,4 +1,7 @@
-"""Write mjcf/: each catalogued design as model, scene, table, README and picture (--no-pictures: all but that)."""
+"""Write mjcf/: each catalogued design as model, scene, table, README and picture (--no-pictures: all but that).
+
+With --pictures only the pictures, of the models that are there.
+"""
 
 from __future__ import annotations
 
@@ -27,8 +30,9 @@ def main() -> None:
     for name in DESIGNS:
         folder = FOLDER / name
         folder.mkdir(parents=True, exist_ok=True)
-        for file, text in model_files(load_design(name)).items():
-            write_text(folder / file, text)
+        if "--pictures" not in sys.argv:
+            for file, text in model_files(load_design(name)).items():
+                write_text(folder / file, text)
         if "--no-pictures" not in sys.argv:
             write_picture(folder / "scene.xml", folder / f"{name}.png")
         print(f"mjcf/{name}")
