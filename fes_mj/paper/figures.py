@@ -99,7 +99,7 @@ def truncated_maps(runs: Runs, known: Known) -> Figure:
 
 def power_of_r2_and_d1(runs: Runs, known: Known) -> Figure:
     """Figure 12: power of R2 and D1 over the turn, both groups, before and after the text."""
-    figure, axes = _grid(6, 2, (7.2, 9.8), sharey="row", height_ratios=(2, 2, 1) * 2)
+    figure, axes = _grid(6, 2, (7.2, 8.2), sharey="row", height_ratios=(2, 2, 1) * 2)
     for rows, name in zip((axes[:3], axes[3:]), ("r2", "d1"), strict=True):
         _powers(rows, runs, known, name)
     _legend_below(figure, axes)
