@@ -26,7 +26,7 @@ lint: $(VENV)/.ready
 
 # The site, in site/: README, tutorials, results, and a page for each module; a link that leads nowhere stops it.
 docs: $(VENV)/.ready
-	$(BIN)/python -m sphinx -c docs -b html --fail-on-warning --keep-going --quiet . site
+	$(BIN)/python -m sphinx -c docs -b html --jobs auto --fail-on-warning --keep-going --quiet . site
 
 format: $(VENV)/.ready
 	$(BIN)/ruff format .

@@ -1,6 +1,7 @@
 """The site, made of the repository's own pages: `make docs`. Its source folder is the repository."""
 
 import importlib.metadata
+from pathlib import Path
 
 project = "fes_mj"
 release = importlib.metadata.version("fes-mj")
@@ -16,7 +17,7 @@ extensions = [
 root_doc = "docs/index"
 include_patterns = ["*.md", "docs/**", "results/**.md", "mjcf/**.md", "examples/**.md"]
 exclude_patterns = ["docs/templates"]
-templates_path = ["templates"]
+templates_path = [str(Path(__file__).parent / "templates")]  # absolute: autosummary would look beside the sources
 html_additional_pages = {"index": "to_readme.html"}
 
 html_theme = "furo"

@@ -88,8 +88,8 @@ class WorkTable:
 def uncertain_table(moments: JointMoments) -> WorkTable:
     """Table whose first set of moments is the given one, the others its deviations along independent directions.
 
-    A power p, shape (sets,), has the mean p[0] and the standard deviation |p[1:]|. Raises InputError for moments
-    whose covariance is not known.
+    A power p, shape (sets,), has the mean p[0] and the norm of p[1:] as its standard deviation. Raises InputError for
+    moments whose covariance is not known.
     """
     if moments.covariance is None:
         raise InputError(
