@@ -50,7 +50,7 @@ def simulate(
     render
         Write a video (.mp4) of the moving legs and linkage beside the crank power.
     speed
-        Of the video: 1 is the true one. By default it is so slow that a turn takes 4 s.
+        Of the video: 1 is the true one. By default a turn takes 4 s.
     out
         Existing folder for the result (JSON), the cycle (CSV) and the model (MJCF).
     timestep

@@ -77,7 +77,7 @@ def turning(design: Design) -> ComplexArray:
     """An arc around the crank centre the way it turns, m: ahead of the linkage, outside all that moves there."""
     centre = complex(design.linkage.crank_centre)
     cloud = np.concatenate([np.ravel(points) for points in _moving(design).values()]) - centre
-    there = np.abs(np.angle(cloud / centre)) < 1.5 * _REACH
+    there = np.abs(np.angle(cloud * np.conj(centre))) < 1.5 * _REACH
     radius = max(PARTS["chainring"].size, *np.abs(cloud[there])) + _CLEAR
     return np.asarray(centre + radius * np.exp(1j * (np.angle(centre) + np.linspace(-_REACH, _REACH, 20))))
 
