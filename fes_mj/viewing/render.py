@@ -15,7 +15,7 @@ from fes_mj.files import replacing
 from fes_mj.simulation.bench import Simulation
 from fes_mj.simulation.mjcf import build_mjcf
 from fes_mj.viewing.headless import use_offscreen_gl
-from fes_mj.viewing.stage import SIDE, set_stage, stage
+from fes_mj.viewing.stage import SIDE, stage
 
 PLOT_WIDTH = 560  # pixels
 FRAMES_PER_SECOND = 30
@@ -53,7 +53,6 @@ def pictures(case: Case, steps: IntArray, speed: float) -> Iterator[Picture]:
 
     run, panel = case.simulation, PowerPanel(case, PLOT_WIDTH, SIDE)
     spec = build_mjcf(run.design, cadence=run.cadence, timestep=run.timestep, legs=len(run.legs))
-    set_stage(spec)
     with stage(spec, run.design, speed, len(run.legs)) as scene:
         for step in steps:
             pose = {name: angle[step] for name, angle in run.joint_angle.items()}

@@ -12,7 +12,7 @@ from fes_mj.ride_case import RideCase
 from fes_mj.simulation.appearance import Spec, lowest_point
 from fes_mj.simulation.road import RoadRun, build_road_mjcf
 from fes_mj.viewing.render import FRAMES_PER_SECOND, PLOT_WIDTH, require_video, write_video
-from fes_mj.viewing.stage import SIDE, set_stage, stage
+from fes_mj.viewing.stage import SIDE, stage
 
 LONGEST = 12.0  # s that are shown, in real time, from the start
 AFTER_STOP = 1.0  # s that are shown of a tricycle that has stopped
@@ -36,9 +36,8 @@ def _pictures(case: RideCase, steps: IntArray, end: float) -> Iterator[Picture]:
 
     run, panel = case.simulation, RidePanel(case, end, PLOT_WIDTH, SIDE)
     spec = build_road_mjcf(run.ride, run.timestep)
-    set_stage(spec)
     _add_road(spec, run)
-    with stage(spec, run.ride.design, speed=1.0, legs=2, distance=_DISTANCE) as scene:
+    with stage(spec, run.ride.design, speed=1.0, legs=2, road=_DISTANCE) as scene:
         for step in steps:
             pose = {name: run.sensors[f"{name}_angle"][step] for name in run.sensors.joints}
             yield np.hstack([scene.picture(pose, run.trace.distance[step]), panel.frame(int(step))])

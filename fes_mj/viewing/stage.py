@@ -21,6 +21,7 @@ _FINER = 2
 # Seen from the rider's right, a little from above: the rider faces right, the crank turns clockwise.
 AZIMUTH, ELEVATION, FIELD_OF_VIEW = -97.0, -7.0, 24.0  # deg
 _MARGIN = 0.1  # m around all that moves or sits
+_DEPTH = 0.3  # m that some of it is nearer to the camera than the middle
 _ROOM = 1.25  # above and below, for what is written there
 _WALL = 3.0  # m behind the middle; a white wall is drawn faster than a sky
 _REACH, _CLEAR, _HEAD = 0.45, 0.06, 0.035  # the arrow: rad to either side, m outside all that moves, m of its head
@@ -29,16 +30,20 @@ _KEY, _SWATCH, _GAP = 688, 25, 18  # pixels: the key's height, a colour with its
 
 
 class Camera:
-    """Fixed, sees all that moves or sits over the whole turn; `distance` times as far as it needs to be.
+    """Fixed, sees all that moves or sits over the whole turn.
 
-    near: the leg nearest to it.
+    near: the leg nearest to it. distance: how many times as far it is as it needs to be. rows: pixels in the middle of
+    the picture's height within which all of that is seen.
     """
 
     def __init__(self, design: Design, near: Leg, distance: float = 1.0) -> None:
         low, high = bounding_box(_extent(design))
         centre, size = (low + high) / 2, high - low + 2 * _MARGIN * (1 + 1j)
         self._middle, self._near = np.array([centre.real, 0.0, centre.imag]), near
-        self._distance = distance * max(size.real, _ROOM * size.imag) / 2 / np.tan(np.radians(FIELD_OF_VIEW / 2))
+        half = np.tan(np.radians(FIELD_OF_VIEW / 2))
+        self._distance = distance * max(size.real, _ROOM * size.imag) / 2 / half
+        share = (size.imag / 2 + _MARGIN) / half / (self._distance - _DEPTH)
+        self.rows = min(SIDE, 2 * int(np.ceil(share * SIDE / 2)))
 
     def forwards(self, way: float) -> mujoco.MjvCamera:
         """MuJoCo's camera, so many m further forwards."""
@@ -82,22 +87,17 @@ def turning(design: Design) -> ComplexArray:
     return np.asarray(centre + radius * np.exp(1j * (np.angle(centre) + np.linspace(-_REACH, _REACH, 20))))
 
 
-def set_stage(spec: Spec) -> None:
-    """Light, wall and picture size."""
-    spec.visual.global_.offwidth = spec.visual.global_.offheight = _FINER * SIDE
-    spec.visual.global_.fovy, spec.visual.quality.offsamples = FIELD_OF_VIEW, 0
-    spec.visual.headlight.ambient, spec.visual.headlight.diffuse = [0.55] * 3, [0.5] * 3
-    wall = spec.worldbody.add_geom(name="wall", type=mujoco.mjtGeom.mjGEOM_PLANE, rgba=(1, 1, 1, 1))
-    wall.pos, wall.quat, wall.size = (0, -_WALL, 0), (1, -1, 0, 0), (0, 0, 1)
-    wall.contype = wall.conaffinity = 0
-
-
 class Stage:
     """Draws a model in any pose; made by `stage`."""
 
     def __init__(self, model: mujoco.MjModel, renderer: mujoco.Renderer, camera: Camera, overlay: Any) -> None:
-        self._model, self._data, self._renderer, self._overlay = model, mujoco.MjData(model), renderer, overlay
-        self._camera = camera
+        from PIL import Image
+
+        self._model, self._data, self._renderer, self._camera = model, mujoco.MjData(model), renderer, camera
+        self._top = (SIDE - renderer.height // _FINER) // 2
+        self._empty = Image.new("RGB", overlay.size, "white")
+        self._empty.paste(overlay, mask=overlay)
+        self._overlay = overlay.crop((0, self._top, SIDE, SIDE - self._top))
 
     def picture(self, joint_angle: Mapping[str, float], forwards: float = 0.0) -> Picture:
         """With joints at these angles or displacements, by name; the camera so many m further forwards.
@@ -106,24 +106,43 @@ class Stage:
         """
         from PIL import Image
 
-        model, data = self._model, self._data
+        model, data, picture = self._model, self._data, self._empty.copy()
         for name, angle in joint_angle.items():
             data.joint(name).qpos[0] = angle
         mujoco.mj_kinematics(model, data)
         mujoco.mj_comPos(model, data)
         mujoco.mj_camlight(model, data)
         self._renderer.update_scene(data, self._camera.forwards(forwards))
-        image = Image.fromarray(self._renderer.render()).reduce(_FINER)
-        image.paste(self._overlay, mask=self._overlay)
-        return np.asarray(image)
+        drawn = Image.fromarray(self._renderer.render()).reduce(_FINER)
+        drawn.paste(self._overlay, mask=self._overlay)
+        picture.paste(drawn, (0, self._top))
+        return np.asarray(picture)
 
 
 @contextmanager
-def stage(spec: Spec, design: Design, speed: float, legs: int, distance: float = 1.0) -> Iterator[Stage]:
-    """Of a model on which set_stage was called. speed: of the video, 1 is the true one; it is written into it."""
-    model, camera = spec.compile(), Camera(design, LEGS[legs][0], distance)
-    with mujoco.Renderer(model, _FINER * SIDE, _FINER * SIDE) as renderer:
+def stage(spec: Spec, design: Design, speed: float, legs: int, road: float = 0.0) -> Iterator[Stage]:
+    """Of a model, on which light and a wall are put.
+
+    speed: of the video, 1 is the true one; it is written into it. road: how many times as far away the camera is, so
+    that a road is seen too; with none only the middle is drawn, where something is.
+    """
+    camera = Camera(design, LEGS[legs][0], road or 1.0)
+    rows = SIDE if road else camera.rows
+    _set(spec, rows)
+    model = spec.compile()
+    with mujoco.Renderer(model, _FINER * rows, _FINER * SIDE) as renderer:
         yield Stage(model, renderer, camera, _overlay(design, camera, speed))
+
+
+def _set(spec: Spec, rows: int) -> None:
+    """Light, wall and picture size."""
+    visual = spec.visual
+    visual.global_.offwidth, visual.global_.offheight, visual.quality.offsamples = _FINER * SIDE, _FINER * rows, 0
+    visual.global_.fovy = 2 * np.degrees(np.arctan(rows / SIDE * np.tan(np.radians(FIELD_OF_VIEW / 2))))
+    visual.headlight.ambient, visual.headlight.diffuse = [0.55] * 3, [0.5] * 3
+    wall = spec.worldbody.add_geom(name="wall", type=mujoco.mjtGeom.mjGEOM_PLANE, rgba=(1, 1, 1, 1))
+    wall.pos, wall.quat, wall.size = (0, -_WALL, 0), (1, -1, 0, 0), (0, 0, 1)
+    wall.contype = wall.conaffinity = 0
 
 
 def speed_text(speed: float) -> str:

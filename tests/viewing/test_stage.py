@@ -22,7 +22,6 @@ def test_points_are_drawn_where_mujoco_draws_them(legs: int) -> None:
     use_offscreen_gl()
     design = fes_mj.load_design("d1")
     spec = build_mjcf(design, legs=legs)
-    stages.set_stage(spec)
     hip = np.array(stages.PARTS["hip"].colour)
     with stages.stage(spec, design, 1.0, legs) as scene:
         names = ("right_crank", "crank")
@@ -32,6 +31,26 @@ def test_points_are_drawn_where_mujoco_draws_them(legs: int) -> None:
     pixel = stages.Camera(design, LEGS[legs][0]).pixels(np.array([0j]))[0]
     # the pin stands out of the plane towards the camera by 7 cm, which moves it by some pixels
     assert (columns.mean(), rows.mean()) == pytest.approx(pixel, abs=12)
+
+
+@pytest.mark.parametrize("name", DESIGNS)
+def test_nothing_is_cut(name: str) -> None:
+    """The outermost pixels of what is drawn are those of an empty picture, all over the turn."""
+    use_offscreen_gl()
+    case = fes_mj.Case(fes_mj.load_design(name), fes_mj.load_moments(), legs=2)
+    run = case.simulation
+    rows = stages.Camera(case.design, LEGS[2][0]).rows
+    top = (stages.SIDE - rows) // 2
+    assert rows < stages.SIDE  # less than the whole is drawn
+    spec = build_mjcf(case.design, cadence=run.cadence, timestep=run.timestep, legs=2)
+    with stages.stage(spec, case.design, 1.0, 2) as scene:
+        empty = np.asarray(scene._empty)[top : stages.SIDE - top]
+        for step in np.linspace(0, len(run.crank_angle), 12, endpoint=False).astype(int):
+            picture = scene.picture({joint: angle[step] for joint, angle in run.joint_angle.items()})
+            drawn = picture[top : stages.SIDE - top]
+            for edge in ((0, ...), (-1, ...), (..., 0, slice(None)), (..., -1, slice(None))):
+                np.testing.assert_array_equal(drawn[edge], empty[edge])
+            assert (drawn != empty).any(axis=-1).mean() > 0.1
 
 
 @pytest.mark.parametrize("name", DESIGNS)
