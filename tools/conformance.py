@@ -30,8 +30,9 @@ from fes_mj.design import Design
 from fes_mj.design_file import DESIGNS, load_design
 from fes_mj.files import json_text, write_text
 from fes_mj.provenance import provenance
-from fes_mj.simulation.export import mjcf_text, variant_options
+from fes_mj.simulation.export import mjcf_text
 from fes_mj.simulation.mjcf import build_mjcf
+from fes_mj.simulation.variants import variant_options
 
 ROOT = Path(__file__).parents[1]
 SCRIPTS, ENVIRONMENTS, RESULTS = ROOT / "tools" / "readers", ROOT / ".readers", ROOT / "results"
