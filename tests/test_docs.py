@@ -29,3 +29,13 @@ def test_own_moments(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: py
     assert {"moments.png", "plain.csv"} <= {path.name for path in tmp_path.iterdir()}
     page = (ROOT / "docs" / "own_moments.md").read_text()
     assert (tmp_path / "trial.toml").read_text().split("[moments]")[1] in page  # the file shown is the file used
+
+
+def test_stimulation(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    (command,) = commands("stimulation.md")
+    assert run(shlex.split(command)[1:]) == 0
+    header = (tmp_path / "d1-windows.csv").read_text().splitlines()[0].split(",")
+    page = (ROOT / "docs" / "stimulation.md").read_text()
+    for name in re.findall(r"`(\w+_(?:deg|rpm|Hz|s))`", page):
+        assert name in header or f"{name.removesuffix('_deg')}_on_deg" in header, name
