@@ -5,6 +5,7 @@ import runpy
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -34,6 +35,73 @@ def test_pedal_force() -> None:
     names = runpy.run_path(str(EXAMPLES / "pedal_force.py"))
     simulated, exact = np.abs(names["run"].loop_force["pedal"]), np.abs(names["reactions"]["pedal"])
     assert simulated.mean() == pytest.approx(exact.mean(), rel=1e-3)
+
+
+@pytest.fixture(scope="module")
+def ride_env() -> dict[str, Any]:
+    pytest.importorskip("gymnasium")
+    return runpy.run_path(str(EXAMPLES / "ride_env.py"))
+
+
+@pytest.mark.parametrize("actions", ["stimulation", "moments"])
+@pytest.mark.parametrize("variants", [("ride",), ("ride", "fixed-gear", "compatible")], ids="+".join)
+def test_ride_env(ride_env: dict[str, Any], actions: str, variants: tuple[str, ...]) -> None:
+    """Gymnasium's own checker, with every warning an error; the same seed rides the same way."""
+    from gymnasium import make
+    from gymnasium.utils.env_checker import check_env
+
+    env = make("fes_mj/Ride-v0", actions=actions, variants=variants, duration=0.4).unwrapped
+    check_env(env)
+    assert env.action_space.shape == ((6,) if actions == "stimulation" else (4,))
+    runs = []
+    for _ in range(2):
+        env.action_space.seed(1)
+        runs.append(ride_env["roll_out"](env, ride_env["random_policy"](env), seed=3))
+    assert np.array_equal(runs[0]["distance"], runs[1]["distance"])
+    assert runs[0]["time"][-1] == pytest.approx(0.4)
+    assert len(runs[0]["time"]) == 21
+
+
+def test_ride_env_rewards_the_table(ride_env: dict[str, Any]) -> None:
+    """A table of stimulation beats chance, for less effort; the reward adds up to what info says."""
+    env = ride_env["RideEnv"]("r2", duration=6.0)
+    env.action_space.seed(0)
+    table, chance = (ride_env["roll_out"](env, ride_env[f"{name}_policy"](env)) for name in ("table", "random"))
+    for episode in (table, chance):
+        expected = episode["distance"][-1] - ride_env["EFFORT"] * episode["effort"][-1]
+        assert episode["reward"].sum() == pytest.approx(expected)
+    assert table["reward"].sum() > chance["reward"].sum() + 1
+    assert table["effort"][-1] < chance["effort"][-1]
+    assert table["speed"][-1] > table["speed"][0]
+
+
+def test_ride_env_does_what_its_documentation_says(ride_env: dict[str, Any]) -> None:
+    """It rolls to a stop without stimulation; activations follow with their lag; a moment is its share of the range."""
+    env = ride_env["RideEnv"]("trt", duration=100.0)
+    episode = ride_env["roll_out"](env, lambda _: np.zeros(6, np.int8))
+    assert episode["time"][-1] < 100
+    assert episode["speed"][-1] < ride_env["STOPPED"]
+    assert episode["effort"][-1] == 0
+    env.reset(seed=0)
+    for step in range(1, 4):
+        observation, *_ = env.step(np.ones(6, np.int8))
+        assert observation[4:] == pytest.approx(1 - np.exp(-step * ride_env["PERIOD"] / env.lag))
+    direct = ride_env["RideEnv"]("trt", actions="moments")
+    direct.reset(seed=0)
+    direct.step(np.array([0.5, -1.0, 0.0, 1.0], np.float32))
+    assert direct.data.ctrl == pytest.approx([0.5, -1, 0, 1] * direct.model.actuator_ctrlrange[:, 1])
+
+
+@pytest.mark.long
+def test_mjx_rollout() -> None:
+    """Copies with different leads part, the loops of all hold, and a lead of half a turn is worst."""
+    pytest.importorskip("jax")
+    pytest.importorskip("mujoco.mjx")
+    found = runpy.run_path(str(EXAMPLES / "mjx_rollout.py"))["roll_out"](copies=4, duration=0.5)
+    assert np.isfinite(found["distance"]).all()
+    assert found["loop_gap"].max() < 1e-5
+    assert found["distance"].argmin() == 3  # the leads go from -90 to 180 deg
+    assert 0.5 < found["distance"].min() < found["distance"].max() < 1.0
 
 
 def replay(model: Path) -> float:

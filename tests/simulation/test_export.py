@@ -104,6 +104,7 @@ def test_the_compatible_variant_gives_the_power_of_statics(name: str) -> None:
 COMMENTS = {
     "bears the stiff servo": ((), ("free",)),
     "Runge-Kutta": (("free",), ("compatible",)),
+    "one evaluation": (("brake",), ("free",)),
     "holds the cadence where": (("compatible",), ("brake", "compatible")),
     "the brake takes": (("brake",), ("ride",)),
     "Metres ridden": (("ride",), ("two-legs",)),
