@@ -104,10 +104,15 @@ def test_mjx_rollout() -> None:
     assert 0.5 < found["distance"].min() < found["distance"].max() < 1.0
 
 
+def replayed(*arguments: str, folder: Path) -> subprocess.CompletedProcess[str]:
+    """The example, in a process that cannot import fes_mj."""
+    command = [sys.executable, "-I", "-c", _REPLAY, str(EXAMPLES / "replay_moments.py"), *arguments]
+    return subprocess.run(command, capture_output=True, text=True, cwd=folder)
+
+
 def replay(model: Path) -> float:
-    """Mean crank power, W, that the example prints in a process that cannot import fes_mj."""
-    command = [sys.executable, "-I", "-c", _REPLAY, str(EXAMPLES / "replay_moments.py"), str(model)]
-    process = subprocess.run(command, capture_output=True, text=True, cwd=model.parent)
+    """Mean crank power that it prints, W."""
+    process = replayed(str(model), folder=model.parent)
     assert process.returncode == 0, process.stderr
     return float(re.search(r"crank power ([\d.-]+) W", process.stdout)[1])  # type: ignore[index]
 
@@ -116,7 +121,7 @@ _REPLAY = """
 import runpy, sys
 sys.modules["fes_mj"] = None
 sys.argv = sys.argv[1:]
-runpy.run_path(sys.argv[0])
+runpy.run_path(sys.argv[0], run_name="__main__")
 """
 
 
@@ -146,6 +151,41 @@ def test_replay_moments_notices_wrong_moments(tmp_path: Path) -> None:
     )
     expected = quasi_static(load_design("d1"), load_moments()).power_mean
     assert abs(replay(tmp_path / "model.xml") / expected - 1) > 0.1
+
+
+@pytest.mark.parametrize(
+    ("file", "said"),
+    [
+        ("", "give one model of `fes_mj export`"),
+        ("nowhere.xml", "nowhere.xml: there is no such file"),
+        ("model.csv", "model.csv: MuJoCo cannot load it"),
+        ("folder", "folder: there is no such file"),
+        ("scene.xml", "scene.csv: cannot read the table of joint moments: No such file or directory; give the model"),
+        ("passive.xml", "passive.xml: it has no motors knee, hip; export it without the variant passive"),
+        ("free.xml", "free.xml: nothing holds its crank"),
+        ("words.xml", "words.csv: this is no table of numbers"),
+        ("empty.xml", "empty.csv: this is no table of numbers"),
+        ("other.xml", "other.csv: the columns crank_Nm are not there"),
+    ],
+)
+def test_replay_moments_of_a_wrong_file_is_one_message(file: str, said: str, tmp_path: Path) -> None:
+    for name, variants in {"model": [], "passive": ["passive"], "free": ["free"]}.items():
+        flags = [flag for variant in variants for flag in ("--variant", variant)]
+        assert run(["export", "trt", "-o", str(tmp_path / f"{name}.xml"), *flags]) == 0
+    (tmp_path / "folder").mkdir()
+    model = (tmp_path / "model.xml").read_text()
+    tables = {"words": "a,b\n1,two\n", "empty": "", "other": "crank_angle_deg,knee_Nm,hip_Nm\n0,1,2\n"}
+    for name, table in tables.items():
+        (tmp_path / f"{name}.xml").write_text(model)
+        (tmp_path / f"{name}.csv").write_text(table)
+    scene = (ROOT / "mjcf/trt/scene.xml").read_text().replace("trt.xml", "model.xml")
+    (tmp_path / "scene.xml").write_text(scene)
+    process = replayed(*([file] if file else []), folder=tmp_path)
+    assert process.returncode == 2
+    assert process.stderr.startswith("replay_moments.py: ")
+    assert said in process.stderr
+    assert len(process.stderr.splitlines()) == 1
+    assert process.stdout == ""
 
 
 def test_no_example_is_left_out() -> None:
