@@ -69,7 +69,7 @@ pictures: $(VENV)/.ready reproduce
 
 # Install the other readers of the models, each into an environment of its own, and compare them with MuJoCo.
 readers: $(VENV)/.ready
-	$(BIN)/python tools/conformance.py --build
+	$(BIN)/python -m tools.conformance --build
 
 $(VENV)/.for-demo: WANTED = video
 $(VENV)/.ready: WANTED = $(EVERYTHING)

@@ -30,6 +30,7 @@ def _plain(text: str) -> str:
         pytest.param("designer.md", marks=pytest.mark.long),
         "engineer.md",
         "own_moments.md",
+        "stimulation.md",
         pytest.param("reviewer.md", marks=pytest.mark.long),
     ],
 )
