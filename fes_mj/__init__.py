@@ -4,6 +4,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from fes_mj.budget.budget import error_budget as error_budget
     from fes_mj.crosscheck import Case as Case
     from fes_mj.design import Design as Design, Linkage as Linkage, Rider as Rider
     from fes_mj.design_file import load_design as load_design
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
 
 # Imported when first used: help needs no numpy, statics no MuJoCo.
 _PUBLIC = {
+    "budget.budget": ("error_budget",),
     "crosscheck": ("Case",),
     "design": ("Design", "Linkage", "Rider"),
     "design_file": ("load_design",),

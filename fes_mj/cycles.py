@@ -26,6 +26,7 @@ from fes_mj.kinematics import joint_angles, positions
 from fes_mj.moments import JointMoments
 from fes_mj.reference_tricycle import ReferenceTricycle
 from fes_mj.torque_map import torque_map
+from fes_mj.uncertainty import independent_deviations
 
 # Joint, crank angle of the measurement from top dead centre -> N m, last axis: sets.
 Moments: TypeAlias = Callable[[str, FloatArray], FloatArray]
@@ -34,7 +35,6 @@ Moments: TypeAlias = Callable[[str, FloatArray], FloatArray]
 TURN_POINTS = len(SCAN)
 # Positions in a block: its arrays stay in the processor's cache, where a position costs half of what it does outside.
 BLOCK_POSITIONS = 8000
-_NEGLIGIBLE = 1e-9  # part of the largest variance of moments; directions below it are rounding
 _TABLE_STEPS = 5400  # over the 1.5 turns that source_angle returns
 
 
@@ -95,10 +95,7 @@ def uncertain_table(moments: JointMoments) -> WorkTable:
         raise InputError(
             f"{moments.name}: nothing is known of the error of these moments; only a rider group's have one"
         )
-    variance, directions = np.linalg.eigh(moments.covariance)
-    large = variance > _NEGLIGIBLE * variance[-1]
-    # rounded: the last bits depend on the threads that the library uses, and results must not
-    deviations = PerJoint(*np.split(np.round(directions[:, large] * np.sqrt(variance[large]), 10), 2))
+    deviations = PerJoint(*np.split(independent_deviations(moments.covariance), 2))
     torque = torque_map(moments)
 
     def sets(joint: str, angle: FloatArray) -> FloatArray:

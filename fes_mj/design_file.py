@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from fes_mj.arrays import FloatArray
 from fes_mj.design import ARCHITECTURES, BRANCHES, Design, Linkage, Rider
 from fes_mj.errors import InputError
 from fes_mj.files import Section, is_number, read_toml
@@ -32,6 +33,18 @@ def load_design(source: str | Path, dims: str = "identified") -> Design:
     if path.suffix != ".toml" and (len(str(source)) > 255 or "\0" in str(source) or not path.exists()):
         raise InputError(f"{source}: no such design; it must be one of {', '.join(DESIGNS)} or a path to a .toml file")
     return _read(path)
+
+
+def identified_draws(name: str) -> dict[str, FloatArray]:
+    """What identification leaves open of a six-bar of the paper: linkages by component (variables), in units of files.
+
+    Shape (linkages,) each, drawn evenly; empty for any other name. Written by tools/make_catalogue.py.
+    """
+    path = _FOLDER / "identified" / f"{name}-draws.npz"
+    if name not in DESIGNS or not path.exists():
+        return {}
+    with np.load(path) as stored:
+        return {component: np.asarray(stored[component]) for component in stored}
 
 
 def _read(path: Path) -> Design:

@@ -5,6 +5,7 @@ the crank is doing. Speed dependence and the muscles' lag come on top.
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -13,7 +14,8 @@ from fes_mj.arrays import BoolArray, FloatArray
 from fes_mj.design import Design
 from fes_mj.joints import JOINTS, PerJoint
 from fes_mj.moments import JointMoments
-from fes_mj.torque_map import GRID, TABLE_SIZE, TorqueMap, torque_map
+from fes_mj.torque_map import GRID, TABLE_SIZE, torque_map
+from fes_mj.torque_velocity import TorqueVelocity
 
 POINTS = TABLE_SIZE  # crank angles of a table over a turn
 
@@ -42,12 +44,11 @@ def drive(design: Design, moments: JointMoments, lag: float = 0.0) -> Drive:
     angle, rate = motion.joint_angle, motion.joint_rate
 
     def command(joint: str) -> FloatArray:
-        table = at_rest(torque, joint)
-        step, turn = GRID[1], table[:POINTS]
-        lead = lag * torque.reference.cadence * (np.roll(turn, -1) - np.roll(turn, 1)) / (2 * step)
+        table, speed = torque.table[joint][:POINTS], torque.reference_speed[joint][:POINTS]
+        turn = commanded(table, torque.moments.torque_velocity, joint, speed, lag * torque.reference.cadence)
         source = torque.source_angle(joint, angle[joint], rate[joint])
-        position = np.mod(source, 2 * np.pi) / step
-        return np.asarray(np.interp(position, np.arange(POINTS), turn + lead, period=POINTS))
+        position = np.mod(source, 2 * np.pi) / GRID[1]
+        return np.asarray(np.interp(position, np.arange(POINTS), turn, period=POINTS))
 
     sides = [rate[joint] >= 0 for joint in JOINTS] + [
         torque.reference.excess(joint, angle[joint]) == 0 for joint in JOINTS
@@ -56,9 +57,14 @@ def drive(design: Design, moments: JointMoments, lag: float = 0.0) -> Drive:
     return Drive(PerJoint.of(command), breaks, motion)
 
 
-def at_rest(torque: TorqueMap, joint: str) -> FloatArray:
-    """Moment of the map at every crank angle of GRID as it would be at rest, N m."""
-    table, relation = torque.table[joint], torque.moments.torque_velocity
-    if relation is None:
-        return table
-    return table / relation.factor(joint, np.sign(table) * torque.reference_speed[joint])
+def commanded(
+    moment: FloatArray, relation: TorqueVelocity | None, joint: str, speed: FloatArray, lag_angle: Any
+) -> FloatArray:
+    """Command over a turn of the tricycle of the measurement, N m, to which muscles with a lag answer with `moment`.
+
+    moment: N m, and speed: rad/s, of the joint there, over uniform crank angles along the last axis. lag_angle: what
+    that crank turns in the time constant of the lag, rad.
+    """
+    at_rest = moment / relation.factor(joint, np.sign(moment) * speed) if relation else moment
+    change = np.roll(at_rest, -1, axis=-1) - np.roll(at_rest, 1, axis=-1)
+    return np.asarray(at_rest + lag_angle * change * at_rest.shape[-1] / (4 * np.pi))

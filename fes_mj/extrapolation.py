@@ -56,19 +56,29 @@ def extrapolation(
     outside = PerJoint.of(lambda joint: np.abs(excess[joint]) > NO_MORE)
     work = PerJoint.of(lambda joint: np.abs(joint_moment[joint] * rate[joint]))
     lost = sum(float(work[joint][outside[joint]].sum()) for joint in JOINTS)
-    variance = 0.0
-    for joint in JOINTS:
-        drift = np.clip(excess[joint] / reference.half_range(joint), -1, 1) * outside[joint]
-        for end in (-1, 1):
-            for direction in (-1, 1):
-                zone = np.maximum(end * drift, 0) * np.maximum(direction * rate[joint], 0)
-                variance += float(torque.table[joint].std() * zone.mean()) ** 2
+    zones = zone_powers(motion, torque)
     return Extrapolation(
         share=float(np.mean(outside.knee | outside.hip)),
         work_share=lost / max(float(work.knee.sum() + work.hip.sum()), np.finfo(float).tiny),
-        sd=cadence * float(np.sqrt(variance)),
+        sd=cadence * float(np.sqrt(np.einsum("...z,...z->...", zones, zones))),
         excess=excess.map(lambda each: float(np.abs(each).max())),
     )
+
+
+def zone_powers(motion: Motion, torque: TorqueMap) -> FloatArray:
+    """Mean power per crank speed by which a turn is unsure in each zone without data, N m, shape (8,), (designs, 8).
+
+    The zones, independent of each other: of knee, then hip, at either end of the range, in flexion and in extension.
+    """
+    reference, zones = torque.reference, []
+    for joint, angle in motion.joint_angle.items():
+        excess, rate = reference.excess(joint, angle), motion.joint_rate[joint]
+        drift = np.clip(excess / reference.half_range(joint), -1, 1) * (np.abs(excess) > NO_MORE)
+        for end in (-1, 1):
+            for direction in (-1, 1):
+                zone = np.maximum(end * drift, 0) * np.maximum(direction * rate, 0)
+                zones.append(torque.table[joint].std() * zone.mean(axis=-1))
+    return np.stack(zones, axis=-1)
 
 
 def beyond(reference: ReferenceTricycle, angle: PerJoint[FloatArray]) -> PerJoint[FloatArray]:

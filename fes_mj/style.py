@@ -18,6 +18,8 @@ COLOURS = {
 LINKS = {"thigh": "#cdb399", "shank": "#e0c9b0", "crank": "#e07d28", "rocker": "#736bad", "coupler": "#5c945c"}
 # Curves of the same kind beside each other, in their order
 SERIES = ("#1f4fd8", "#d97a00", "#3a7d44")
+# Parts of a whole, stacked, the last for what is left
+PARTS = ("#1f4fd8", "#8a8f98", "#c01c28", "#d97a00", "#3a7d44", "#c4189a", "#d9dce1")
 GOOD, BAD = "#1a7f37", "#c01c28"
 INK, FAINT = "#20242c", "#5a606c"
 

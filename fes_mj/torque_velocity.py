@@ -1,7 +1,8 @@
 """How a joint's moment changes with its speed: Hill's hyperbola. Off by default, as in the paper."""
 
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -10,6 +11,9 @@ import numpy as np
 
 from fes_mj.arrays import FloatArray
 from fes_mj.files import read_toml
+from fes_mj.joints import JOINTS
+
+_NUMBERS = ("curvature", "eccentric_plateau")
 
 
 @dataclass(frozen=True)
@@ -17,7 +21,7 @@ class TorqueVelocity:
     """Moment at a joint speed per moment at rest, by one muscle for the joint.
 
     curvature: Hill's a / F0. eccentric_plateau: moment of fast lengthening. max_speed: by joint, rad/s, at which
-    nothing is left of a shortening muscle's moment.
+    nothing is left of a shortening muscle's moment. Of a batch (stacked) arrays of shape (relations, 1).
     """
 
     name: str
@@ -34,6 +38,12 @@ class TorqueVelocity:
         """The same for a plain float, without numpy."""
         relative = speed / self.max_speed[joint]
         return float(self._factor(min(max(relative, 0.0), 1.0), max(-relative, 0.0)))
+
+    def taken(self, rows: Any) -> "TorqueVelocity":
+        """The relations of a batch at `rows` (an index array)."""
+        numbers: dict[str, Any] = {name: np.asarray(getattr(self, name))[rows] for name in _NUMBERS}
+        speeds: Any = {joint: np.asarray(speed)[rows] for joint, speed in self.max_speed.items()}
+        return replace(self, max_speed=speeds, **numbers)
 
     def _factor(self, shortening: Any, lengthening: Any) -> Any:
         return hill_factor(self.curvature, self.eccentric_plateau, shortening, lengthening)
@@ -62,16 +72,29 @@ def load_torque_velocity(name: str) -> TorqueVelocity:
 
 
 def drawn_relations(name: str, count: int, seed: int) -> list[TorqueVelocity]:
-    """Relations drawn from the prior on the parameters of the one with this name."""
+    """Relations drawn from the prior on parameters and shape of the one with this name."""
     random, prior, best = np.random.default_rng(seed), _row(name)["prior"], load_torque_velocity(name)
     found = []
-    for faster, flatter, part in zip(*random.standard_normal((2, count)), random.random(count), strict=True):
-        low, high = prior["eccentric_plateau"]
+    for faster, flatter, *even in zip(*random.standard_normal((2, count)), *random.random((3, count)), strict=True):
         factor = math.exp(prior["max_speed_log_sd"] * faster)
-        speeds = {joint: factor * speed for joint, speed in best.max_speed.items()}
         curvature = best.curvature * math.exp(prior["curvature_log_sd"] * flatter)
-        found.append(TorqueVelocity(name, curvature, low + part * (high - low), speeds))
+        if even[1] < prior["straight_share"]:
+            factor = math.radians(_between(prior["straight_end_deg_s"], even[2])) / best.max_speed["knee"]
+            curvature = math.inf  # Hill's hyperbola is straight then
+        speeds = {joint: factor * speed for joint, speed in best.max_speed.items()}
+        found.append(TorqueVelocity(name, curvature, _between(prior["eccentric_plateau"], even[0]), speeds))
     return found
+
+
+def stacked(relations: Sequence[TorqueVelocity]) -> TorqueVelocity:
+    """A batch of relations: its numbers are arrays of shape (relations, 1)."""
+    numbers: dict[str, Any] = {name: np.array([[getattr(each, name)] for each in relations]) for name in _NUMBERS}
+    speeds: Any = {joint: np.array([[each.max_speed[joint]] for each in relations]) for joint in JOINTS}
+    return replace(relations[0], max_speed=speeds, **numbers)
+
+
+def _between(ends: list[float], part: float) -> float:
+    return ends[0] + part * (ends[1] - ends[0])
 
 
 def _row(name: str) -> dict[str, Any]:

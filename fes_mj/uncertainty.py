@@ -16,6 +16,8 @@ from fes_mj.kinematics import Motion
 from fes_mj.reference_tricycle import ReferenceTricycle
 from fes_mj.torque_map import TorqueMap
 
+_NEGLIGIBLE = 1e-9  # part of the largest variance of moments; directions below it are rounding
+
 
 def power_weights(motion: Motion, cadence: Any, torque: TorqueMap | ReferenceTricycle) -> FloatArray:
     """Mean crank power of one leg per Fourier coefficient of knee, then hip moment, W/(N m), shape (98,).
@@ -67,3 +69,14 @@ def with_sd(value: float, deviation: float | None, digits: int = 2) -> str:
 def standard_deviation(weights: FloatArray, covariance: FloatArray) -> float:
     """Of the linear functional with these weights, shape (98,), of coefficients with this covariance."""
     return float(np.sqrt(weights @ covariance @ weights))
+
+
+def independent_deviations(covariance: FloatArray) -> FloatArray:
+    """One standard deviation of coefficients along each of the directions that vary, shape (98, directions).
+
+    Coefficients are their mean and these, each times a standard normal number of its own.
+    """
+    variance, directions = np.linalg.eigh(covariance)
+    large = variance > _NEGLIGIBLE * variance[-1]
+    # rounded: the last bits depend on the threads that the library uses, and results must not
+    return np.asarray(np.round(directions[:, large] * np.sqrt(variance[large]), 10))

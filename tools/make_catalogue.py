@@ -1,13 +1,34 @@
-"""Write fes_mj/data/designs/identified from the printed dimensions and Table 1's joint ranges."""
+"""Write fes_mj/data/designs/identified from the printed dimensions and Table 1's joint ranges.
 
+Each six-bar as identified (.toml), and linkages drawn from what identification leaves open (-draws.npz).
+"""
+
+from typing import Any
+
+import numpy as np
+
+from fes_mj.budget.unknowns import DIMENSIONS, prior
 from fes_mj.design_file import design_toml, load_design
-from fes_mj.files import write_text
+from fes_mj.files import replacing, write_text
 from fes_mj.geometry import joint_ranges
-from fes_mj.paper.identification import identify, rounded
+from fes_mj.paper.identification import LENGTH_ROUNDING, identify, inside_rounding, rounded
 from fes_mj.paper.printed import DATA, SIX_BARS, table1
 from fes_mj.reference_tricycle import PAPER_TRICYCLE
+from fes_mj.variables import LENGTHS, VARIABLES
 
 FOLDER = DATA / "designs" / "identified"
+DRAWS = 1000
+DIGITS = 6  # 1 um
+_SEED = 2022
+
+
+def half_widths(name: str) -> dict[str, float]:
+    """By component how far a linkage may be from the print, in the unit of files."""
+    angles = {"seat_angle": prior(DIMENSIONS)["seat_angle_deg"], "gamma": prior(DIMENSIONS)["gamma_deg"]}
+    kind = load_design(name).linkage.kind
+    return dict.fromkeys(LENGTHS, LENGTH_ROUNDING) | {
+        symbol: width for symbol, width in angles.items() if kind in VARIABLES[symbol].kinds
+    }
 
 
 def main() -> None:
@@ -25,6 +46,10 @@ def main() -> None:
             f"hip {ranges[2]:.1f} to {ranges[3]:.1f} deg).\nWritten by tools/make_catalogue.py."
         )
         write_text(FOLDER / f"{name}.toml", design_toml(design, comment))
+        drawn = inside_rounding(name, half_widths(name), np.random.default_rng([_SEED, *name.encode()]), DRAWS)
+        with replacing(FOLDER / f"{name}-draws.npz") as temporary:
+            columns: dict[str, Any] = {key: values.round(DIGITS) for key, values in drawn.items()}
+            np.savez_compressed(temporary, **columns)
         print(f"{name}: largest shift {100 * abs(result.shift).max():.2f} cm, cost {result.cost:.3f}")
 
 

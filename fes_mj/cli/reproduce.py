@@ -28,6 +28,7 @@ def reproduce(
         Print nothing but errors.
     """
     require_extra("video", "matplotlib")
+    require_extra("budget", "SALib")
     make_folder(out, "the results")
     from fes_mj.paper import reproduce as paper
 

@@ -8,8 +8,19 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from fes_mj.budget.budget import error_budget, summary
 from fes_mj.cli.options import RunOptions
-from fes_mj.cli.static import force_rows, heading, print_forces, print_notes, rows, span, turn_rows, with_error
+from fes_mj.cli.static import (
+    force_rows,
+    heading,
+    print_budget,
+    print_forces,
+    print_notes,
+    rows,
+    span,
+    turn_rows,
+    with_error,
+)
 from fes_mj.console import conclude, number, print_table, say, verdict
 from fes_mj.errors import InputError
 from fes_mj.files import json_text, require_folder, require_replaceable, require_writable, write_files
@@ -73,7 +84,7 @@ def simulate(
     if results:
         _write(case, *results)
     if options.json:
-        sys.stdout.write(json_text(case.summary()))
+        sys.stdout.write(_content(case))
     elif not options.quiet:
         _print(case, options.verbose)
     if render:
@@ -83,6 +94,11 @@ def simulate(
         if not options.silent:
             say(f"video: {render}")
     return 0 if case.agrees else 1
+
+
+def _content(case: Case) -> str:
+    """The result as JSON text."""
+    return json_text(case.summary() | summary(error_budget(*case.statics)))
 
 
 def _check(timestep: float | None, turns: int) -> None:
@@ -138,6 +154,7 @@ def _print(case: Case, verbose: bool) -> None:
         ("", *(f"quasi-static{side}" for side in sides), "dynamic"),
         [*zip(names, *columns, dynamic, strict=True)],
     )
+    print_budget(*case.statics)
     quasi, measured = (turn_rows(each) for each in (case.static.summary(), case.summary()))
     turn = [(name, value, other) for (name, value), (_, other) in zip(quasi, measured, strict=True)]
     together = "dynamic" if len(run.legs) == 1 else "dynamic, both legs"
@@ -170,4 +187,4 @@ def _write(case: Case, result: Path, cycle: Path, model: Path) -> None:
     from fes_mj.simulation.mjcf import build_mjcf
 
     spec = build_mjcf(case.design, cadence=case.cadence, timestep=case.simulation.timestep, legs=case.legs)
-    write_files({result: json_text(case.summary()), cycle: case.cycle_csv(), model: mjcf_text(spec)})
+    write_files({result: _content(case), cycle: case.cycle_csv(), model: mjcf_text(spec)})

@@ -6,6 +6,7 @@ from typing import Annotated, Any
 import numpy as np
 from cyclopts import Parameter
 
+from fes_mj.budget.budget import error_budget, summary
 from fes_mj.cli.options import RunOptions
 from fes_mj.console import conclude, print_table, say
 from fes_mj.design import Design
@@ -34,10 +35,11 @@ def static(
     loaded = options.load(design)
     result = quasi_static(*loaded)
     if options.json:
-        content = result.summary() | JointForces(result).summary()
+        content = result.summary() | summary(error_budget(result)) | JointForces(result).summary()
         sys.stdout.write(json_text(content | (_curves(quasi_static(*loaded, points=360)) if curves else {})))
     elif not options.quiet:
         print_table(heading(result), ("", "quasi-static"), rows(result))
+        print_budget(result)
         print_table("The turn", ("", "quasi-static"), turn_rows(result.summary()))
         print_forces(JointForces(result))
         if options.verbose:
@@ -108,6 +110,13 @@ def force_rows(forces: dict[str, Any]) -> list[tuple[str, str, str]]:
     """Mean and largest size of forces over the turn, N."""
     sizes = {name.replace("_", " "): np.abs(force) for name, force in forces.items()}
     return [(name, f"{size.mean():.1f}", f"{size.max():.1f}") for name, size in sizes.items()]
+
+
+def print_budget(*legs: QuasiStatic) -> None:
+    """Print how sure the mean power is, all in all, if the error of the moments is known."""
+    budget = error_budget(*legs)
+    if budget:
+        say(f"error budget of the mean power: {budget.text}")
 
 
 def print_notes(result: QuasiStatic, of: str = "") -> None:

@@ -13,6 +13,7 @@ from fes_mj.fourier import TERMS
 from fes_mj.joints import JOINTS
 from fes_mj.kinematics import solve
 from fes_mj.moments import GROUPS
+from fes_mj.paper.budget_figure import budget_figure
 from fes_mj.paper.known import STAGES, Known
 from fes_mj.paper.left_out import rms
 from fes_mj.paper.printed import SIX_BARS
@@ -164,6 +165,11 @@ def who_can_ride(runs: Runs, known: Known) -> Figure:
     return population_figure([*runs.people.values()])
 
 
+def error_budget(runs: Runs, known: Known) -> Figure:
+    """Who is to blame for the error of each power, and how probable each gain is."""
+    return budget_figure(runs.budgets)
+
+
 def riding(runs: Runs, known: Known) -> Figure:
     """Speed on the flat and slope climbed, fixed gear and freewheel, with the scatter of the muscles drawn."""
     figure, axes = _grid(1, 3, (7.2, 3.0), sharey=False)
@@ -204,6 +210,7 @@ FIGURES: dict[str, Callable[[Runs, Known], Figure]] = {
     "scores": scores,
     "who-can-ride": who_can_ride,
     "riding": riding,
+    "error-budget": error_budget,
 }
 
 

@@ -4,7 +4,7 @@ For given seat angle and coupler angle the designs separate: each is a least-squ
 lengths with the eight range limits of Table 1 and the Grashof condition as constraints.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,8 +12,11 @@ from scipy.optimize import least_squares, minimize
 
 from fes_mj.arrays import FloatArray
 from fes_mj.design import Design
+from fes_mj.design_file import load_design
 from fes_mj.geometry import grashof_margin, joint_ranges
-from fes_mj.variables import lengths, with_lengths
+from fes_mj.kinematics import FULL_TURN
+from fes_mj.paper.printed import table1
+from fes_mj.variables import component, lengths, replaced, with_lengths
 from fes_mj.verification.case import Expected
 
 LENGTH_ROUNDING = 0.005  # m, Table 2 is rounded to 1 cm
@@ -92,6 +95,33 @@ def range_misfit(printed: Design, target: Expected, seat_angle: float, coupler_a
         for start in starts[:_STARTS]
     ]
     return float(np.abs(min(fits, key=lambda fit: fit.cost).fun).max()) if fits else float("nan")
+
+
+def inside_rounding(
+    name: str, half_widths: Mapping[str, float], random: np.random.Generator, wanted: int, batch: int = 10_000
+) -> dict[str, FloatArray]:
+    """Linkages drawn evenly around the print that move as Table 1 says, by component, shape (linkages,) each.
+
+    half_widths: by component (fes_mj.variables), in the unit of files, how far it may be from the print. At most
+    `wanted` linkages: those of which a finer turn says otherwise are left out.
+    """
+    printed, target = load_design(name, "printed"), table1()[name]
+    wanted_ranges = (*target.knee_range, *target.hip_range)
+    middle, half = (
+        np.array(each)[:, None, None]
+        for each in ([component(printed, key) for key in half_widths], [*half_widths.values()])
+    )
+
+    def moving_so(drawn: FloatArray, points: FloatArray) -> FloatArray:
+        ranges = joint_ranges(replaced(printed, dict(zip(half_widths, drawn, strict=True))), points)
+        return drawn[:, np.all(np.abs(ranges - wanted_ranges) < 0.5, axis=1)]
+
+    accepted: FloatArray = np.empty((len(half_widths), 0, 1))
+    while accepted.shape[1] < wanted:
+        drawn = middle + half * random.uniform(-1, 1, (len(half_widths), batch, 1))
+        accepted = np.hstack([accepted, moving_so(drawn, FULL_TURN[::8])])
+    accepted = moving_so(accepted[:, :wanted], FULL_TURN)  # the coarse turn may have stepped over an extreme
+    return dict(zip(half_widths, accepted[..., 0], strict=True))
 
 
 def _candidates(printed: Design, seat_angle: float, coupler_angle: float) -> Callable[[FloatArray], Design]:

@@ -1,28 +1,25 @@
 """How far the recovered moments can be trusted: residuals, what the text says, what Table 2's rounding leaves open."""
 
-from collections.abc import Iterable
-
 import numpy as np
 
 from fes_mj.arrays import FloatArray
 from fes_mj.design import Design
 from fes_mj.design_file import load_design
 from fes_mj.fourier import fourier
-from fes_mj.geometry import joint_ranges
-from fes_mj.kinematics import FULL_TURN, solve
+from fes_mj.kinematics import solve
 from fes_mj.moments import GROUPS
 from fes_mj.paper.captions import captioned
 from fes_mj.paper.evidence import functional, of_group
-from fes_mj.paper.identification import LENGTH_ROUNDING
+from fes_mj.paper.identification import LENGTH_ROUNDING, inside_rounding
 from fes_mj.paper.known import Known
 from fes_mj.paper.left_out import rms
-from fes_mj.paper.printed import SIX_BARS, table1
+from fes_mj.paper.printed import SIX_BARS
 from fes_mj.paper.reconstruction import condition
 from fes_mj.paper.statements import load_statements
 from fes_mj.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.table import Table
 from fes_mj.uncertainty import power_weights, with_sd
-from fes_mj.variables import lengths, with_lengths
+from fes_mj.variables import LENGTHS, replaced
 
 _SEED = 2022
 
@@ -80,7 +77,9 @@ def rounding_spread(known: Known, batch: int = 10_000, wanted: int = 200) -> dic
     spread: dict[tuple[str, str], FloatArray] = {}
     random = np.random.default_rng(_SEED)
     for name in SIX_BARS:
-        weights = np.array([_weights(design) for design in _inside_rounding(name, random, batch, wanted)])
+        drawn = inside_rounding(name, dict.fromkeys(LENGTHS, LENGTH_ROUNDING), random, wanted, batch)
+        printed, rows = load_design(name, "printed"), zip(*drawn.values(), strict=True)
+        weights = np.array([_weights(replaced(printed, dict(zip(drawn, row, strict=True)))) for row in rows])
         for group, posterior in known.text.posteriors.items():
             spread[name, group] = (weights - _weights(load_design(name))) @ posterior.mean
     return spread
@@ -93,19 +92,6 @@ def rounding_table(spread: dict[tuple[str, str], FloatArray]) -> Table:
         for (name, group), change in spread.items()
     ]
     return captioned("rounding", rows)
-
-
-def _inside_rounding(name: str, random: np.random.Generator, batch: int, wanted: int) -> Iterable[Design]:
-    printed, target = load_design(name, "printed"), table1()[name]
-    accepted: list[FloatArray] = []
-    while len(accepted) < wanted:
-        shift = random.uniform(-LENGTH_ROUNDING, LENGTH_ROUNDING, (9, batch, 1))
-        drawn = lengths(printed)[:, None, None] + shift
-        error = joint_ranges(with_lengths(printed, drawn), FULL_TURN[::8]) - (*target.knee_range, *target.hip_range)
-        accepted += list(drawn[:, np.all(np.abs(error) < 0.5, axis=1), 0].T)
-    samples = (with_lengths(printed, each) for each in accepted[:wanted])
-    # the coarse turn may have stepped over an angle at which the linkage does not close
-    return (sample for sample in samples if np.all(np.isfinite(joint_ranges(sample))))
 
 
 def _weights(design: Design) -> FloatArray:

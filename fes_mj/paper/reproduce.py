@@ -10,7 +10,19 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from fes_mj.errors import InputError
 from fes_mj.files import json_text, require_replaceable, write_files
-from fes_mj.paper import calibration, gains, metrics, people, readings, recovery, riding, tables, work_shares
+from fes_mj.paper import (
+    calibration,
+    error_budget,
+    gains,
+    metrics,
+    people,
+    readings,
+    recovery,
+    riding,
+    stationarity,
+    tables,
+    work_shares,
+)
 from fes_mj.paper.captions import figure_section
 from fes_mj.paper.evidence import load_evidence
 from fes_mj.paper.known import Known, known
@@ -118,7 +130,25 @@ def _pages(facts: Known, runs: Runs, done: Done) -> dict[str, tuple[str, list[Ta
         ),
         "gains.md": (
             "How much of the gain is real",
-            [table(runs) for table in (gains.speed_table, gains.hill_table, gains.smoothness_table)],
+            [
+                *(table(runs) for table in (gains.speed_table, gains.hill_table, gains.smoothness_table)),
+                stationarity.stationarity_table(),
+            ],
+        ),
+        "error_budget.md": (
+            "One error budget",
+            [
+                error_budget.prior_table(),
+                *(
+                    table(runs.budgets)
+                    for table in (
+                        error_budget.contribution_table,
+                        error_budget.share_table,
+                        error_budget.probability_table,
+                        error_budget.better_table,
+                    )
+                ),
+            ],
         ),
     }
 
@@ -132,8 +162,10 @@ def require_ours(folder: Path) -> None:
 
 def inputs() -> list[Path]:
     """The data files that the results depend on."""
-    shared = [DATA / f"{name}.toml" for name in ("paper", "evidence", "riders", "text", "torque_velocity")]
-    return [*shared, *sorted((DATA / "designs").glob("*/*.toml")), *sorted((DATA / "moments").iterdir())]
+    shared = [
+        DATA / f"{name}.toml" for name in ("paper", "evidence", "error_budget", "riders", "text", "torque_velocity")
+    ]
+    return [*shared, *sorted((DATA / "designs").glob("*/*")), *sorted((DATA / "moments").iterdir())]
 
 
 def figures_page() -> str:

@@ -10,19 +10,19 @@ from fes_mj.design_file import DESIGNS, load_design
 from fes_mj.errors import AssemblyError
 from fes_mj.moments import GROUPS
 from fes_mj.moments_file import load_moments
-from fes_mj.paper import riding
+from fes_mj.paper import error_budget, riding
 from fes_mj.population import Study, study_population
 from fes_mj.statics import QuasiStatic, quasi_static
 from fes_mj.torque_velocity import load_torque_velocity
 
-RUNS = (2 * len(GROUPS) + 1) * len(DESIGNS) + riding.STEPS  # simulations, with one leg and two, populations, rides
+RUNS = (2 * len(GROUPS) + 1) * len(DESIGNS) + riding.STEPS + error_budget.STEPS  # simulations, populations, rides ...
 
 
 @dataclass(frozen=True)
 class Runs:
     """By (design, group): statics with identified and with printed dimensions (None where the print cannot turn), with
     Hill's torque-velocity relation, and the checked simulations by (design, group, legs). Who can ride, by design,
-    and how they ride.
+    and how they ride. What each unknown contributes, by (design, group).
     """
 
     static: dict[tuple[str, str], QuasiStatic]
@@ -31,11 +31,12 @@ class Runs:
     dynamic: dict[tuple[str, str, int], Case]
     people: dict[str, Study]
     rides: list[riding.Riding]
+    budgets: error_budget.Budgets
 
 
 def run_all(done: Callable[[], None]) -> Runs:
     """Solve and simulate everything; `done` is called RUNS times."""
-    runs = Runs({}, {}, {}, {}, {}, riding.study(done))
+    runs = Runs({}, {}, {}, {}, {}, riding.study(done), {})
     moments = {group: load_moments(group) for group in GROUPS}
     for name in DESIGNS:
         for group in GROUPS:
@@ -51,6 +52,7 @@ def run_all(done: Callable[[], None]) -> Runs:
                 done()
         runs.people[name] = study_population(load_design(name), moments[GROUPS[0]])
         done()
+    runs.budgets.update(error_budget.study(runs.static, done))
     return runs
 
 

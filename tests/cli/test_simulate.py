@@ -25,6 +25,9 @@ def test_simulate_json_has_the_promised_keys(capsys: pytest.CaptureFixture[str])
     assert 0 < content["cadence_ripple"] <= 1e-4
     assert {"name", "value", "limit", "ok"} <= set(content["checks"][0])
     assert all(check["ok"] for check in content["checks"])
+    static = json.loads(result(capsys, "static", "r1", "--group", "p1p3", "--json")[1])
+    for key in ("power_sd_total_W", "power_sd_by"):  # the mean is the same function of what is not known
+        assert content[key] == static[key]
 
 
 def test_tables_carry_units_and_the_verdict(capsys: pytest.CaptureFixture[str]) -> None:

@@ -56,6 +56,27 @@ def test_power_of_recovered_moments_has_a_standard_deviation(
     assert "+-" not in result(capsys, "static", "d1", "--moments", str(own))[1]
 
 
+def test_the_error_budget(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    content = json.loads(result(capsys, "static", "d1", "--json")[1])
+    by = content["power_sd_by"]
+    assert [*by] == [*("moments", "dimensions", "speed dependence", "lag", "rider", "extrapolation", "leg masses")]
+    assert by["moments"] == pytest.approx(content["power_sd_W"])  # D1 stays inside the range of the moments
+    assert by["leg masses"] == 0
+    assert max(by.values()) < content["power_sd_total_W"]
+    assert content["power_sd_at_its_speed_W"] < content["power_sd_total_W"]
+    assert content["draws_that_do_not_turn"] < 0.02 * content["draws"]
+    assert content == json.loads(result(capsys, "static", "d1", "--json")[1])
+    said = f"{content['power_mean_drawn_W']:.1f} +- {content['power_sd_total_W']:.1f} W with every unknown drawn"
+    assert f"error budget of the mean power: {said}" in result(capsys, "static", "d1")[1].replace("\n", " ")
+    own = tmp_path / "own.csv"
+    own.write_text("crank_angle_deg,knee_Nm,hip_Nm\n0,10,0\n90,20,0\n180,0,5\n270,-10,0\n")
+    content = json.loads(result(capsys, "static", str(written(tmp_path)), "--moments", str(own), "--json")[1])
+    assert (content["power_sd_total_W"], content["power_sd_by"]) == (None, None)
+    assert "error budget" not in result(capsys, "static", "d1", "--moments", str(own))[1]
+    content = json.loads(result(capsys, "static", str(written(tmp_path)), "--json")[1])
+    assert content["power_sd_total_W"] > content["power_sd_W"]
+
+
 def test_joint_angles_without_data_are_mentioned(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     path = written(tmp_path, seat_angle="50.0")
     code, out, _ = result(capsys, "static", str(path))

@@ -1,0 +1,121 @@
+"""What each unknown contributes to the error of a mean power, and all of them together."""
+
+import math
+from collections.abc import Collection, Iterable
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from fes_mj.arrays import FloatArray, IntArray
+from fes_mj.budget.power import Rows, UncertainPower
+from fes_mj.budget.unknowns import EXTRAPOLATION, LAG, MASSES, MOMENTS, SPEED, priors
+from fes_mj.statics import QuasiStatic
+from fes_mj.uncertainty import standard_deviation, with_sd
+
+DRAWS = 256  # of a single command: a standard deviation is known to 4 % of itself, in 0.2 s
+_SEED = 2007
+_OF_A_LEG = (MOMENTS, EXTRAPOLATION)  # which legs with moments of their own do not share
+
+
+class Spread(NamedTuple):
+    """Mean and standard deviation of drawn powers, W, of those whose linkage turns, and how many do not."""
+
+    mean: float
+    sd: float
+    failed: int
+
+    @classmethod
+    def of(cls, powers: FloatArray) -> "Spread":
+        """Of powers with NaN for linkages that do not turn; NaN if fewer than two do."""
+        some = powers[np.isfinite(powers)]
+        if some.size < 2:
+            return cls(math.nan, math.nan, powers.size - some.size)
+        return cls(float(some.mean()), float(some.std(ddof=1)), powers.size - some.size)
+
+
+@dataclass(frozen=True)
+class ErrorBudget:
+    """Of the mean crank power of one leg.
+
+    by: standard deviation by unknown, W, the others as they are known best; None where it cannot be told. total: all
+    unknowns drawn. at_its_speed: all but the speed dependence, which is as the run has it. draws: of each.
+    """
+
+    by: dict[str, float | None]
+    total: Spread
+    at_its_speed: Spread
+    draws: int
+
+    def summary(self) -> dict[str, Any]:
+        """The result as JSON names and units it."""
+        return {
+            "power_sd_total_W": self.total.sd,
+            "power_mean_drawn_W": self.total.mean,
+            "power_sd_at_its_speed_W": self.at_its_speed.sd,
+            "power_mean_drawn_at_its_speed_W": self.at_its_speed.mean,
+            "power_sd_by": self.by,
+            "draws": self.draws,
+            "draws_that_do_not_turn": self.total.failed,
+        }
+
+    @property
+    def text(self) -> str:
+        """The result in a sentence, the largest contribution first, those below a hundredth of the total left out."""
+        largest = sorted(((sd, name) for name, sd in self.by.items() if sd and sd > self.total.sd / 100), reverse=True)
+        alone = ", ".join(f"{name} {sd:.2g}" for sd, name in largest)
+        failed = f"; {self.total.failed} of {self.draws} linkages drawn do not turn" * bool(self.total.failed)
+        together, at_its_speed = (with_sd(*each[:2], 1) for each in (self.total, self.at_its_speed))
+        return (
+            f"{together} W with every unknown drawn (sd of each alone: {alone}), {at_its_speed} W with the speed "
+            f"dependence as here{failed}"
+        )
+
+
+def error_budget(*legs: QuasiStatic, draws: int = DRAWS) -> ErrorBudget | None:
+    """Of the mean power of legs, each with moments of its own; None where the error of any moments is not known."""
+    if any(each.moments.covariance is None for each in legs):
+        return None
+    uncertain = [UncertainPower(each, draws) for each in legs]
+    names, alone = unknowns(*legs), np.arange(draws)
+    by: dict[str, float | None] = dict.fromkeys(priors(), None) | {MASSES: 0.0} | _linear(legs)
+    by |= {name: Spread.of(powers(uncertain, {name: alone})[0]).sd for name in names if name not in _OF_A_LEG}
+    drawn = powers(uncertain, together(names, draws), [SPEED])
+    return ErrorBudget(by, Spread.of(drawn[0]), Spread.of(drawn[1]), draws)
+
+
+def summary(budget: ErrorBudget | None) -> dict[str, Any]:
+    """The result as JSON names and units it; null where the error of the moments is not known."""
+    return budget.summary() if budget else dict.fromkeys(("power_sd_total_W", "power_sd_by"))
+
+
+def unknowns(*legs: QuasiStatic) -> list[str]:
+    """Names of what can be drawn: without the cadence of the measurement neither speed dependence nor lag."""
+    known = all(each.moments.cadence_known for each in legs)
+    return [name for name in priors() if name != MASSES and (known or name not in (SPEED, LAG))]
+
+
+def together(names: Iterable[str], count: int, times: int = 1) -> dict[str, IntArray]:
+    """Rows with all the unknowns at once, in which every realisation of each comes up so many times."""
+    random = np.random.default_rng(_SEED)
+    return {name: random.permutation(np.tile(np.arange(count), times)) for name in names}
+
+
+def powers(legs: list[UncertainPower], rows: Rows, *without: Collection[str]) -> FloatArray:
+    """UncertainPower.at of the mean of legs; what belongs to a leg is independent of the other's."""
+    found = [legs[0].at(rows, *without)]
+    for leg in legs[1:]:
+        own = {name: leg.count - 1 - some if name in _OF_A_LEG else some for name, some in rows.items()}
+        found.append(leg.at(own, *without))
+    return np.asarray(np.mean(found, axis=0))
+
+
+def _linear(legs: Iterable[QuasiStatic]) -> dict[str, float]:
+    """What needs no drawing: by the covariance of the moments, and by what is known of their range."""
+    pairs = [
+        (standard_deviation(each.power_weights, each.moments.covariance), each.extrapolation.sd)
+        for each in legs
+        if each.moments.covariance is not None
+    ]
+    moments, outside = (math.hypot(*some) / len(pairs) for some in zip(*pairs, strict=True))
+    return {MOMENTS: moments, EXTRAPOLATION: outside}

@@ -1,0 +1,139 @@
+"""Mean crank power as a function of what is not known: one realisation of each unknown a row."""
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from fes_mj import kinematics
+from fes_mj.arrays import BoolArray, FloatArray, IntArray
+from fes_mj.batch import batch_size
+from fes_mj.budget.unknowns import (
+    DIMENSIONS,
+    EXTRAPOLATION,
+    LAG,
+    MOMENTS,
+    RIDER,
+    SPEED,
+    ZONES,
+    Realisations,
+    realisations,
+)
+from fes_mj.design import Design
+from fes_mj.drive import commanded
+from fes_mj.extrapolation import zone_powers
+from fes_mj.fourier import HARMONICS
+from fes_mj.geometry import SCAN, obstacles, span_limits
+from fes_mj.joints import JOINTS
+from fes_mj.kinematics import Motion
+from fes_mj.statics import QuasiStatic
+from fes_mj.variables import replaced
+
+# Over the angles of SCAN; against twenty times as many a power changes by less than 0.02 W rms, and with a lag, which
+# filters the jumps of the torque map, by less than 0.2 W.
+TABLE = 360  # crank angles of the measurement, between which moments are interpolated linearly
+BLOCK = 1000  # rows at once: their arrays take some ten megabytes
+_TURN = np.arange(TABLE) * (2 * np.pi / TABLE)
+
+Rows = Mapping[str, IntArray]  # by unknown which realisation; one that is missing is as it is known best
+
+
+@dataclass(frozen=True, eq=False)
+class UncertainPower:
+    """Mean power of one leg with what is not known of it: `count` realisations of every unknown.
+
+    result: with all as it is known best.
+    """
+
+    result: QuasiStatic
+    count: int
+
+    @cached_property
+    def drawn(self) -> Realisations:
+        """Realisations of every unknown."""
+        return realisations(self.result.design, self.result.moments, self.count)
+
+    def at(self, rows: Rows, *without: Collection[str]) -> FloatArray:
+        """Power of each row of realisations, W; NaN where the linkage does not turn.
+
+        without: unknowns, none of the linkage's or the rider's, that are as they are known best in a case of their own.
+        Shape (1 + cases, rows).
+        """
+        count = len(next(iter(rows.values())))
+        blocks = [slice(start, start + BLOCK) for start in range(0, count, BLOCK)]
+        cases = [{name: some[block] for name, some in rows.items()} for block in blocks]
+        return np.concatenate([self._block(each, without) for each in cases], axis=1)
+
+    def _block(self, rows: Rows, without: Sequence[Collection[str]]) -> FloatArray:
+        motion = kinematics.solve(self._design(rows), SCAN)
+        turns, count = _turns(motion), len(next(iter(rows.values())))
+        cases = [{name: some for name, some in rows.items() if name not in omitted} for omitted in ((), *without)]
+        return np.where(turns, [np.broadcast_to(self._mean(motion, each), count) for each in cases], np.nan)
+
+    def _design(self, rows: Rows) -> Design:
+        drawn = self.drawn
+        parts = ((DIMENSIONS, drawn.dimensions), (RIDER, drawn.legs))
+        values = {name: each[rows[key], None] for key, part in parts if key in rows for name, each in part.items()}
+        return replaced(self.result.design, values)
+
+    def _mean(self, motion: Motion, rows: Rows) -> FloatArray:
+        """Mean power along a motion, W, shape (rows,) or (1,)."""
+        torque, cadence, drawn = self.result.torque, self.result.cadence, self.drawn
+        best = np.concatenate([*self.result.moments.coefficients])[None]
+        tables = _tables(drawn.coefficients[rows[MOMENTS]] if MOMENTS in rows else best)
+        relation = drawn.relations.taken(rows[SPEED]) if SPEED in rows else self.result.moments.torque_velocity
+        lag = drawn.lags[rows[LAG]] if LAG in rows else np.zeros((1, 1))
+        drifts = drawn.drifts[rows[EXTRAPOLATION]] if EXTRAPOLATION in rows else np.zeros(ZONES)
+        power = cadence * np.einsum("...z,...z->...", np.atleast_2d(zone_powers(motion, torque)), drifts)
+        speeds, angles, rates = torque.reference.joint_rates(_TURN), motion.joint_angle, motion.joint_rate
+        for joint, table in zip(JOINTS, tables, strict=True):
+            rate, measured = rates[joint], torque.reference.cadence
+            told = commanded(table, relation, joint, measured * speeds[joint], lag * measured)
+            moment = _answer(_read(told, torque.source_angle(joint, angles[joint], rate)), lag, cadence, measured)
+            if relation:
+                moment = moment * relation.factor(joint, np.sign(moment) * cadence * rate)
+            power = power + cadence * np.einsum("...a,...a->...", moment, rate) / rate.shape[-1]
+        return np.asarray(power)
+
+
+def _tables(coefficients: FloatArray) -> list[FloatArray]:
+    """Knee and hip moment at TABLE crank angles of the measurement, N m, shape (curves, TABLE) each."""
+    tables: list[FloatArray] = []
+    for part in np.split(coefficients, 2, axis=-1):
+        spectrum = np.zeros((len(part), TABLE // 2 + 1), complex)
+        spectrum[:, 0] = part[:, 0]
+        spectrum[:, 1 : HARMONICS + 1] = (part[:, 1 : HARMONICS + 1] - 1j * part[:, HARMONICS + 1 :]) / 2
+        tables.append(np.fft.irfft(spectrum, TABLE, norm="forward"))
+    return tables
+
+
+def _read(table: FloatArray, source: FloatArray) -> FloatArray:
+    """Tables over a turn, shape (rows or 1, TABLE), at crank angles, rad, shape (rows, angles) or (angles,)."""
+    position = np.mod(np.nan_to_num(source), 2 * np.pi) * (TABLE / (2 * np.pi))
+    index = position.astype(np.int64)
+    part = position - index
+    row = np.arange(len(table))[:, None]
+    here, there = table[row, index % TABLE], table[row, (index + 1) % TABLE]
+    return here + part * (there - here)
+
+
+def _answer(command: FloatArray, lag: FloatArray, cadence: float, measured: float) -> FloatArray:
+    """What a muscle with a lag, s, makes of a periodic command that is timed ahead for the crank speed, rad/s."""
+    if not lag.any():
+        return command
+    order = np.arange(command.shape[-1] // 2 + 1)
+    ahead = np.atan(cadence * lag) - np.atan(measured * lag)
+    transfer = np.exp(1j * order * ahead) / (1 + 1j * order * cadence * lag)
+    return np.fft.irfft(np.fft.rfft(command) * transfer, command.shape[-1])
+
+
+def _turns(motion: Motion) -> BoolArray:
+    """Whether the designs of a motion over SCAN turn, as every command decides; shape (designs,), or (1,)."""
+    design = motion.design
+    distance = np.atleast_2d(np.abs(motion.points["pedal"].value))
+    shortest, longest = span_limits(design, ("thigh", "shank"))
+    reach = np.minimum(longest - distance.max(axis=1), distance.min(axis=1) - shortest)
+    reach = np.array(np.broadcast_to(reach, batch_size(design)))
+    swing = np.ptp(np.atleast_2d(motion.joint_angle.hip), axis=1)
+    return np.asarray(~np.logical_or.reduce([*obstacles(design, reach, swing).values()]))

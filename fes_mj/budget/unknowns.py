@@ -1,0 +1,123 @@
+"""What is not known of a design's mean power: realisations of each unknown, drawn once, from the priors of the data.
+
+An unknown, be it a curve, a linkage or a number, is so reduced to one index; the power is a function of these.
+"""
+
+import zlib
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from fes_mj.arrays import FloatArray
+from fes_mj.design import Design
+from fes_mj.design_file import identified_draws, load_design
+from fes_mj.files import read_toml
+from fes_mj.joints import JOINTS
+from fes_mj.kinematics import FULL_TURN
+from fes_mj.moment_samples import sampled_coefficients
+from fes_mj.moments import GROUPS, JointMoments
+from fes_mj.moments_file import load_moments
+from fes_mj.torque_velocity import TorqueVelocity, drawn_relations, stacked
+from fes_mj.uncertainty import independent_deviations
+from fes_mj.variables import LENGTHS, component
+
+# As data/error_budget.toml has them; the last has no effect on a mean power.
+MOMENTS, DIMENSIONS, SPEED, LAG = "moments", "dimensions", "speed dependence", "lag"
+RIDER, EXTRAPOLATION, MASSES = "rider", "extrapolation", "leg masses"
+ZONES = 8  # of extrapolation.zone_powers
+_SEED = 2022
+_FILE = Path(__file__).parents[1] / "data" / "error_budget.toml"
+
+
+@dataclass(frozen=True, eq=False)
+class Realisations:
+    """As many of every unknown, along the first axis.
+
+    coefficients: of the moments, N m, shape (count, 98). dimensions, legs: components of the design, in the unit of
+    files, shape (count,) each. relations: a batch. lags: s, shape (count, 1). drifts: of the moments in each zone of
+    extrapolation.zone_powers, in standard deviations, shape (count, 8).
+    """
+
+    coefficients: FloatArray
+    dimensions: dict[str, FloatArray]
+    relations: TorqueVelocity
+    lags: FloatArray
+    legs: dict[str, FloatArray]
+    drifts: FloatArray
+
+
+def realisations(design: Design, moments: JointMoments, count: int) -> Realisations:
+    """So many of each unknown, for moments with a covariance. What designs share is the same in all of them."""
+    random = np.random.default_rng(_SEED)
+    lags = prior(LAG)["longest_s"] * random.random((count, 1))
+    errors = prior(RIDER)["length_sd_m"] * random.standard_normal((2, count))
+    legs = {name: component(design, name) + error for name, error in zip(("thigh", "shank"), errors, strict=True)}
+    drifts = random.standard_normal((count, ZONES))
+    return Realisations(
+        _coefficients(moments, count), _dimensions(design, count), _relations(moments, count), lags, legs, drifts
+    )
+
+
+def prior(unknown: str) -> dict[str, Any]:
+    """What data/error_budget.toml says of an unknown."""
+    return priors()[unknown]
+
+
+@cache
+def priors() -> dict[str, dict[str, Any]]:
+    """The same of all of them, in the order of the file."""
+    return dict(read_toml(_FILE, "priors of the error budget").content)
+
+
+def _relations(moments: JointMoments, count: int) -> TorqueVelocity:
+    """Of those drawn the ones with which the joints could have moved as fast as they did in the measurement."""
+    drawn, reference = _drawn_relations(count), moments.measured_on
+    rates = reference.joint_rates(FULL_TURN)
+    fastest = {joint: np.asarray(speed)[:, 0] for joint, speed in drawn.max_speed.items()}
+    fast = [fastest[joint] > reference.cadence * np.abs(rates[joint]).max() for joint in JOINTS]
+    return drawn.taken(_spread(np.flatnonzero(np.logical_and.reduce(fast)), count))
+
+
+@cache
+def _drawn_relations(count: int) -> TorqueVelocity:
+    return stacked(drawn_relations(prior(SPEED)["relation"], count, _SEED))
+
+
+def _coefficients(moments: JointMoments, count: int) -> FloatArray:
+    """The curves that ship, of a rider group; otherwise Gaussian ones."""
+    covariance = moments.covariance
+    assert covariance is not None
+    shipped = load_moments(moments.name).covariance if moments.name in GROUPS else None
+    if shipped is not None and np.array_equal(covariance, shipped):
+        return _spread(sampled_coefficients(moments.name), count)
+    deviations = independent_deviations(covariance)
+    scores = np.random.default_rng(_seed(moments.name)).standard_normal((count, deviations.shape[1]))
+    return np.asarray(np.concatenate([*moments.coefficients]) + np.einsum("cd,fd->cf", scores, deviations))
+
+
+def _dimensions(design: Design, count: int) -> dict[str, FloatArray]:
+    """Of a design as identified what identification leaves open; otherwise within the last digit of its lengths."""
+    known = identified_draws(design.name)
+    if known and design.linkage == load_design(design.name).linkage:
+        return {name: _spread(values, count) for name, values in known.items()}
+    random = np.random.default_rng(_seed(design.name))
+    sizes = {name: component(design, name) for name in LENGTHS if component(design, name)}
+    half_digit = 0.5 * 10.0 ** -max(_decimals(size) for size in sizes.values())
+    return {name: size + random.uniform(-half_digit, half_digit, count) for name, size in sizes.items()}
+
+
+def _spread(sample: Any, count: int) -> FloatArray:
+    """So many of a sample whose members are independent, evenly from the first to the last."""
+    return np.asarray(sample[np.linspace(0, len(sample) - 1, count).astype(int)])
+
+
+def _decimals(number: float) -> int:
+    return len(np.format_float_positional(number, trim="-").partition(".")[2])
+
+
+def _seed(name: str) -> int:
+    """Another stream of random numbers for every name, the same in every process."""
+    return zlib.crc32(name.encode())

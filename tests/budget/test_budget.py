@@ -1,0 +1,155 @@
+"""The error budget: sums that are known, what is exact, and the same numbers in every process."""
+
+import os
+import subprocess
+import sys
+from dataclasses import replace
+from statistics import NormalDist
+
+import numpy as np
+import pytest
+
+import fes_mj
+from fes_mj.budget.budget import Spread, error_budget, powers, summary, together, unknowns
+from fes_mj.budget.power import UncertainPower
+from fes_mj.budget.unknowns import EXTRAPOLATION, LAG, MASSES, MOMENTS, RIDER, SPEED, priors
+from fes_mj.moments import JointMoments
+from fes_mj.statics import QuasiStatic, quasi_static
+
+ALL = np.arange(1000)
+
+
+def static(name: str, moments: JointMoments) -> QuasiStatic:
+    return quasi_static(fes_mj.load_design(name), moments)
+
+
+@pytest.fixture(scope="module")
+def outside() -> QuasiStatic:
+    """A TRT whose hip leaves the range of the moments."""
+    trt = fes_mj.load_design("trt")
+    return quasi_static(trt.changed({"seat_angle": np.radians(55)}, {}), fes_mj.load_moments())
+
+
+def test_moments_and_extrapolation_are_the_known_standard_deviation(
+    moments: JointMoments, outside: QuasiStatic
+) -> None:
+    for result in (static("d1", moments), static("r2", moments), outside):
+        budget = error_budget(result)
+        assert budget is not None
+        by = budget.by
+        assert by[MOMENTS] is not None
+        assert by[EXTRAPOLATION] is not None
+        assert np.hypot(by[MOMENTS], by[EXTRAPOLATION]) == pytest.approx(result.power_sd, rel=1e-12)
+    assert by[EXTRAPOLATION] > 0.1
+
+
+def test_drawn_moments_agree_with_their_covariance(design: fes_mj.Design, moments: JointMoments) -> None:
+    """The thousand curves that ship have this covariance, so that there is no sampling error."""
+    result = quasi_static(design, moments)
+    spread = Spread.of(UncertainPower(result, 1000).at({MOMENTS: ALL})[0])
+    budget = error_budget(result, draws=8)
+    assert budget is not None
+    assert spread.sd == pytest.approx(budget.by[MOMENTS], rel=0.02)
+    assert spread.mean == pytest.approx(result.power_mean, abs=0.02)
+
+
+def test_drawn_drifts_agree_with_the_known_error_beyond_the_range(outside: QuasiStatic) -> None:
+    spread = Spread.of(UncertainPower(outside, 1000).at({EXTRAPOLATION: ALL})[0])
+    assert spread.sd == pytest.approx(outside.extrapolation.sd, rel=0.07)  # three errors of 1000 draws
+
+
+def test_what_is_linear_and_independent_adds_in_squares(outside: QuasiStatic) -> None:
+    power, rows = UncertainPower(outside, 1000), together((MOMENTS, EXTRAPOLATION), 1000)
+    alone = [Spread.of(power.at({name: ALL})[0]).sd for name in rows]
+    assert Spread.of(power.at(rows)[0]).sd == pytest.approx(np.hypot(*alone), rel=0.05)
+
+
+def test_together_every_realisation_comes_up_equally_often() -> None:
+    rows = together(("one", "two"), 50, 3)
+    assert all(np.bincount(some).tolist() == [3] * 50 for some in rows.values())
+    assert not np.array_equal(rows["one"], rows["two"])
+
+
+@pytest.mark.parametrize(
+    ("unknown", "key", "values"), [(RIDER, "length_sd_m", (0, 0.005, 0.02)), (LAG, "longest_s", (0, 0.05, 0.1))]
+)
+def test_the_worse_a_thing_is_known_the_larger_its_contribution(
+    monkeypatch: pytest.MonkeyPatch, unknown: str, key: str, values: tuple[float, ...]
+) -> None:
+    result, found = static("r1", fes_mj.load_moments()), []
+    for value in values:
+        monkeypatch.setitem(priors()[unknown], key, value)
+        budget = error_budget(result, draws=100)
+        assert budget is not None
+        found.append(budget)
+    alone = [each.by[unknown] for each in found]
+    assert alone[0] == pytest.approx(0, abs=1e-12)
+    assert 0 < alone[1] < alone[2]
+    assert {each.by[MASSES] for each in found} == {0.0}
+
+
+def test_probability_of_a_gain_is_the_normal_one_where_it_is_one() -> None:
+    """P(A > g B) of Gaussian moments, in which both powers are linear; 4000 draws, three errors of a share."""
+    moments = replace(fes_mj.load_moments("p1p3"), name="own")
+    one, other = (static(name, moments) for name in ("d1", "trt"))
+    rows = {MOMENTS: np.arange(4000)}
+    a, b = (UncertainPower(each, 4000).at(rows)[0] for each in (one, other))
+    for gain in (1.77, 1.8, 1.82):
+        weights = one.power_weights - gain * other.power_weights
+        assert moments.covariance is not None
+        score = (one.power_mean - gain * other.power_mean) / np.sqrt(weights @ moments.covariance @ weights)
+        exact = NormalDist().cdf(float(score))
+        assert 0.1 < exact < 0.9
+        assert np.mean(a > gain * b) == pytest.approx(exact, abs=3 * np.sqrt(exact * (1 - exact) / 4000))
+
+
+def test_legs_with_moments_of_their_own_are_independent_in_their_moments_alone() -> None:
+    moments = replace(fes_mj.load_moments(), name="own")
+    one = static("r1", moments)
+    single, double = error_budget(one), error_budget(one, one)
+    assert single is not None
+    assert double is not None
+    assert single.by[MOMENTS] is not None
+    assert double.by[MOMENTS] == pytest.approx(single.by[MOMENTS] / np.sqrt(2))
+    assert double.by[RIDER] == pytest.approx(single.by[RIDER])
+    both = powers([UncertainPower(one, 1000)] * 2, {MOMENTS: ALL})[0]
+    assert both.std() == pytest.approx(one.power_sd / np.sqrt(2), rel=0.1)  # type: ignore[operator]
+
+
+def test_what_cannot_be_told_is_null(smooth_moments: JointMoments) -> None:
+    assert error_budget(static("r1", smooth_moments)) is None
+    assert summary(None) == {"power_sd_total_W": None, "power_sd_by": None}
+    somewhere = static("r1", replace(fes_mj.load_moments(), name="own", cadence_known=False))
+    assert not {SPEED, LAG} & {*unknowns(somewhere)}
+    budget = error_budget(somewhere, draws=20)
+    assert budget is not None
+    assert (budget.by[SPEED], budget.by[LAG]) == (None, None)
+    assert budget.total == budget.at_its_speed
+
+
+def test_too_few_that_turn_have_no_spread() -> None:
+    assert Spread.of(np.array([1.0, 3.0, np.nan])) == (2.0, pytest.approx(np.sqrt(2)), 1)
+    assert np.isnan(Spread.of(np.array([1.0, np.nan]))[:2]).all()
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", ["p1p2", "own"])
+def test_the_same_to_the_last_bit_in_every_process(name: str) -> None:
+    """Whatever the number of threads, for shipped curves and for Gaussian ones."""
+    program = (
+        "import fes_mj; from dataclasses import replace; from fes_mj.budget.budget import error_budget\n"
+        f"moments = replace(fes_mj.load_moments(), name={name!r})\n"
+        "print(error_budget(fes_mj.quasi_static(fes_mj.load_design('d1'), moments), draws=64))"
+    )
+    said = {
+        subprocess.run(
+            [sys.executable, "-c", program],
+            env=os.environ | {"OMP_NUM_THREADS": threads, "OPENBLAS_NUM_THREADS": threads, "PYTHONHASHSEED": threads},
+            capture_output=True,
+            check=True,
+            text=True,
+        ).stdout
+        for threads in ("1", "2")
+    }
+    assert len(said) == 1
+    assert "ErrorBudget" in said.pop()
