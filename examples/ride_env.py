@@ -15,7 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fes_mj import load_design, load_moments
-from fes_mj.drive import at_rest
+from fes_mj.drive import commanded
+from fes_mj.joints import JOINTS
 from fes_mj.simulation.variants import variant_model, variant_options
 from fes_mj.stimulation import MUSCLES, Window, stimulation
 from fes_mj.torque_map import torque_map
@@ -68,8 +69,12 @@ class RideEnv(gymnasium.Env[NDArray[np.float64], NDArray[Any]]):
         self.lag, self.duration, self.stimulated = lag, duration, actions == "stimulation"
         self.relation = moments.torque_velocity
         torque = torque_map(moments)
+        at_rest = {
+            joint: commanded(torque.table[joint], self.relation, joint, torque.reference_speed[joint], 0.0)
+            for joint in JOINTS
+        }
         self.strength = [
-            float((muscle.sense * at_rest(torque, muscle.joint)).max()) for muscle in (MUSCLES[n] for _, n in CHANNELS)
+            float((muscle.sense * at_rest[muscle.joint]).max()) for muscle in (MUSCLES[n] for _, n in CHANNELS)
         ]
         self.steps = round(PERIOD / self.model.opt.timestep)
         self.crank, self.road = self.data.joint("crank"), self.data.joint("road")
