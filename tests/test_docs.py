@@ -1,5 +1,6 @@
 """The commands of the tutorials run, in the order of the page, on the files that the page names."""
 
+import json
 import re
 import shlex
 import shutil
@@ -8,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from fes_mj.cli.app import run
+from fes_mj.simulation.variants import VARIANTS
 
 ROOT = Path(__file__).parents[1]
 
@@ -39,3 +41,32 @@ def test_stimulation(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     page = (ROOT / "docs" / "stimulation.md").read_text()
     for name in re.findall(r"`(\w+_(?:deg|rpm|Hz|s))`", page):
         assert name in header or f"{name.removesuffix('_deg')}_on_deg" in header, name
+
+
+def test_models(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    for command in commands("models.md"):
+        assert run(shlex.split(command)[1:]) == 0, command
+    page = (ROOT / "docs" / "models.md").read_text()
+    named = set(re.findall(r"^\|[^|]*\| `([a-z-]+)` \|", page.split("## Integrator")[0], re.MULTILINE))
+    assert named == set(VARIANTS)
+
+
+def test_the_numbers_of_the_models_are_measured() -> None:
+    """What docs/models.md says of drift and gaps is what results/energy.json holds, and that all keep their limits."""
+    rows = json.loads((ROOT / "results" / "energy.json").read_text())["rows"]
+    assert {row["verdict"] for row in rows} == {"ok"}
+    page = (ROOT / "docs" / "models.md").read_text()
+    laden = [row["drift, %"] for row in rows if row["variants"].split()[1:2] in (["brake"], ["ride"])]
+    assert f"by {min(laden):.3f} to {max(laden):.2f} % with implicitfast" in page
+    one = {row["design"]: row for row in rows if row["variants"] == "passive"}
+    assert one["D2"]["euler, %"] is None
+    assert (
+        f"loses {one['D2']['discrete, %']:.1f} % with `discrete`, and RK4 still loses {one['D2']['rk4, %']:.1f} %"
+        in page
+    )
+    assert f"and {one['R1']['rk4, %']:.0f} % in R1" in page
+    assert f"{one['R1']['fastest, rpm']:.0f} rpm" in page
+    assert f"drifts by {one['R1']['drift, %']:.2f} % in one\nleg of R1" in page
+    assert max(row["drift, %"] for row in rows if row is not one["R1"]) < 0.055
+    assert max(row["loop gap, um"] for row in rows) < 4
