@@ -5,7 +5,7 @@ BIN = $(VENV)/bin
 EVERYTHING = video,optimize,cluster,report,docs,test,lint
 PYTEST = $(BIN)/python -m pytest --numprocesses auto --dist worksteal
 
-.PHONY: demo test test-long lint docs format benchmark catalogue reproduce verification models readers clean
+.PHONY: demo test test-long lint docs format benchmark catalogue reproduce verification models pictures readers clean
 
 demo: $(VENV)/.for-demo
 	mkdir -p demo
@@ -39,6 +39,7 @@ benchmark: $(VENV)/.ready
 	$(BIN)/python -m tools.benchmark_exudyn
 	$(BIN)/python -m tools.benchmark_optimization
 	$(BIN)/python -m tools.benchmark_ride
+	$(BIN)/python -m tools.benchmark_video
 
 # Every check on every design, refined, with all faults injected: results/verification.md; every ride by both solvers:
 # results/ride_verification.md; what each setting of the simulation is worth: results/settings.md
@@ -60,9 +61,16 @@ reproduce: $(VENV)/.ready
 models: $(VENV)/.ready
 	$(BIN)/python tools/make_models.py
 
+# Every picture of README, docs, mjcf/ and results/ again; the last from results/optimization/ripple.json.
+pictures: $(VENV)/.ready reproduce
+	$(BIN)/python tools/make_models.py --pictures
+	$(BIN)/python -m tools.picture_demo
+	$(BIN)/python -m tools.picture_explore
+	$(BIN)/python -m tools.power_and_ripple --picture
+
 # Install the other readers of the models, each into an environment of its own, and compare them with MuJoCo.
 readers: $(VENV)/.ready
-	$(BIN)/python tools/conformance.py --build
+	$(BIN)/python -m tools.conformance --build
 
 $(VENV)/.for-demo: WANTED = video
 $(VENV)/.ready: WANTED = $(EVERYTHING)

@@ -5,10 +5,14 @@ from functools import lru_cache
 
 import numpy as np
 
+from fes_mj import kinematics
 from fes_mj.checks import LEAST_POWER, definitions
-from fes_mj.design import Design
+from fes_mj.design import LEGS, Design
 from fes_mj.errors import InputError
 from fes_mj.geometry import require_assembly
+from fes_mj.reduced import masses
+from fes_mj.reduced_solver import HEIGHT_RATE, INERTIA
+from fes_mj.segments import GRAVITY
 from fes_mj.step_error import Errors, predicted_errors
 from fes_mj.units import RPM
 
@@ -22,6 +26,9 @@ LONGEST_TIMESTEP = 0.02  # s, of those that a user asks for
 # All turns together. With the near-massless run beside it that is a gigabyte and half a minute.
 MOST_STEPS = 1_000_000
 TRIAL = 2 * np.pi / 20_000  # rad a step: still of second order near a dead centre, not yet touched by rounding
+# Runge-Kutta's steps in a turn at the fastest that a loose crank can turn: results/energy.md.
+LOOSE_STEPS = 1920
+POSES = 3600  # of a turn, between which a loose crank is not faster
 # Second differences of positions lose 1e-16 N^2. Where that shows in the prediction at N itself, it is several times as
 # large in the simulation.
 ROUNDING = 1.1
@@ -65,3 +72,24 @@ def _needed_steps(design: Design, cadence: float) -> float:
     steps = max(FEWEST_STEPS, math.ceil(2 * math.pi / TRIAL * math.sqrt(ratio)))
     final = predicted_errors(design, cadence, 2 * math.pi / steps).inverse_dynamics
     return steps if final <= ROUNDING * allowed.inverse_dynamics else math.inf
+
+
+def loose_steps(design: Design, cadence: float, legs: int = 1, gravity: float = GRAVITY) -> int:
+    """Steps of Runge-Kutta in a turn at the cadence for a crank that is set off with it and then left to itself.
+
+    Weight speeds it up and moves kinetic energy to where the crank feels little inertia: I(a) w^2 / 2 + m g h(a) stays.
+    At the fastest that it can turn so, a turn takes LOOSE_STEPS. Raises InputError as steps_per_turn.
+    """
+    steps = steps_per_turn(design, cadence)
+    angle, cell = np.linspace(0, 2 * np.pi, POSES, endpoint=False, retstep=True)
+    columns = np.sum([masses(kinematics.solve(design, angle - leg.lag)) for leg in LEGS[legs]], axis=0)
+    inertia, rate = columns[:, INERTIA], columns[:, HEIGHT_RATE]
+    height = cell * (np.cumsum(rate) - (rate[0] + rate) / 2)  # from crank angle 0
+    fastest = math.sqrt(float(np.max((inertia[0] * cadence**2 - 2 * gravity * height) / inertia)))
+    needed = max(steps, math.ceil(LOOSE_STEPS * fastest / cadence))
+    if needed > MOST_STEPS:
+        raise InputError(
+            f"{design.name}: a loose crank would reach {fastest / RPM:.3g} rpm, which takes {needed:,} time steps a "
+            f"turn at {cadence / RPM:.4g} rpm, more than {MOST_STEPS:,}; keep the links farther from their dead centres"
+        )
+    return needed

@@ -1,5 +1,6 @@
 """The tutorials do what they say: their files and commands, page by page, and what is shown of the output."""
 
+import json
 import re
 import shlex
 import shutil
@@ -10,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from fes_mj.cli.app import run
+from fes_mj.simulation.variants import VARIANTS
 
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
@@ -30,6 +32,7 @@ def _plain(text: str) -> str:
         pytest.param("designer.md", marks=pytest.mark.long),
         "engineer.md",
         "own_moments.md",
+        "stimulation.md",
         pytest.param("reviewer.md", marks=pytest.mark.long),
     ],
 )
@@ -72,3 +75,35 @@ def test_every_module_is_in_the_structure() -> None:
         for path in (ROOT / "fes_mj").rglob("*.py")
     }
     assert set(named) == {name for name in there if not re.match(r"fes_mj(\.cli.*|\.__main__)?$", name)}
+
+
+def test_the_keys_of_the_windows_are_those_of_the_file(tmp_path: Path) -> None:
+    assert run(["stimulation", "d1", "-q", "--csv", str(tmp_path / "windows.csv")]) == 0
+    header = (tmp_path / "windows.csv").read_text().splitlines()[0].split(",")
+    for name in re.findall(r"`(\w+_(?:deg|rpm|Hz|s))`", (DOCS / "stimulation.md").read_text()):
+        assert name in header or f"{name.removesuffix('_deg')}_on_deg" in header, name
+
+
+def test_every_variant_is_in_the_table() -> None:
+    before, _ = (DOCS / "models.md").read_text().split("## Integrator")
+    assert {*re.findall(r"^\|[^|]*\| `([a-z-]+)` \|", before, re.MULTILINE)} == {*VARIANTS}
+
+
+def test_the_numbers_of_the_models_are_measured() -> None:
+    """What docs/models.md says of drift and gaps is what results/energy.json holds, and that all keep their limits."""
+    rows = json.loads((ROOT / "results" / "energy.json").read_text())["rows"]
+    assert {row["verdict"] for row in rows} == {"ok"}
+    page = (DOCS / "models.md").read_text()
+    laden = [row["drift, %"] for row in rows if row["variants"].split()[1:2] in (["brake"], ["ride"])]
+    assert f"by {min(laden):.3f} to {max(laden):.2f} % with implicitfast" in page
+    one = {row["design"]: row for row in rows if row["variants"] == "passive"}
+    assert one["D2"]["euler, %"] is None
+    assert (
+        f"loses {one['D2']['discrete, %']:.1f} % with `discrete`, and RK4 still loses {one['D2']['rk4, %']:.1f} %"
+        in page
+    )
+    assert f"and {one['R1']['rk4, %']:.0f} % in R1" in page
+    assert f"{one['R1']['fastest, rpm']:.0f} rpm" in page
+    assert f"drifts by {one['R1']['drift, %']:.2f} % in one\nleg of R1" in page
+    assert max(row["drift, %"] for row in rows if row is not one["R1"]) < 0.055
+    assert max(row["loop gap, um"] for row in rows) < 4

@@ -5,6 +5,7 @@ import runpy
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -36,10 +37,82 @@ def test_pedal_force() -> None:
     assert simulated.mean() == pytest.approx(exact.mean(), rel=1e-3)
 
 
+@pytest.fixture(scope="module")
+def ride_env() -> dict[str, Any]:
+    pytest.importorskip("gymnasium")
+    return runpy.run_path(str(EXAMPLES / "ride_env.py"))
+
+
+@pytest.mark.parametrize("actions", ["stimulation", "moments"])
+@pytest.mark.parametrize("variants", [("ride",), ("ride", "fixed-gear", "compatible")], ids="+".join)
+def test_ride_env(ride_env: dict[str, Any], actions: str, variants: tuple[str, ...]) -> None:
+    """Gymnasium's own checker, with every warning an error; the same seed rides the same way."""
+    from gymnasium import make
+    from gymnasium.utils.env_checker import check_env
+
+    env = make("fes_mj/Ride-v0", actions=actions, variants=variants, duration=0.4).unwrapped
+    check_env(env)
+    assert env.action_space.shape == ((6,) if actions == "stimulation" else (4,))
+    runs = []
+    for _ in range(2):
+        env.action_space.seed(1)
+        runs.append(ride_env["roll_out"](env, ride_env["random_policy"](env), seed=3))
+    assert np.array_equal(runs[0]["distance"], runs[1]["distance"])
+    assert runs[0]["time"][-1] == pytest.approx(0.4)
+    assert len(runs[0]["time"]) == 21
+
+
+def test_ride_env_rewards_the_table(ride_env: dict[str, Any]) -> None:
+    """A table of stimulation beats chance, for less effort; the reward adds up to what info says."""
+    env = ride_env["RideEnv"]("r2", duration=6.0)
+    env.action_space.seed(0)
+    table, chance = (ride_env["roll_out"](env, ride_env[f"{name}_policy"](env)) for name in ("table", "random"))
+    for episode in (table, chance):
+        expected = episode["distance"][-1] - ride_env["EFFORT"] * episode["effort"][-1]
+        assert episode["reward"].sum() == pytest.approx(expected)
+    assert table["reward"].sum() > chance["reward"].sum() + 1
+    assert table["effort"][-1] < chance["effort"][-1]
+    assert table["speed"][-1] > table["speed"][0]
+
+
+def test_ride_env_does_what_its_documentation_says(ride_env: dict[str, Any]) -> None:
+    """It rolls to a stop without stimulation; activations follow with their lag; a moment is its share of the range."""
+    env = ride_env["RideEnv"]("trt", duration=100.0)
+    episode = ride_env["roll_out"](env, lambda _: np.zeros(6, np.int8))
+    assert episode["time"][-1] < 100
+    assert episode["speed"][-1] < ride_env["STOPPED"]
+    assert episode["effort"][-1] == 0
+    env.reset(seed=0)
+    for step in range(1, 4):
+        observation, *_ = env.step(np.ones(6, np.int8))
+        assert observation[4:] == pytest.approx(1 - np.exp(-step * ride_env["PERIOD"] / env.lag))
+    direct = ride_env["RideEnv"]("trt", actions="moments")
+    direct.reset(seed=0)
+    direct.step(np.array([0.5, -1.0, 0.0, 1.0], np.float32))
+    assert direct.data.ctrl == pytest.approx([0.5, -1, 0, 1] * direct.model.actuator_ctrlrange[:, 1])
+
+
+@pytest.mark.long
+def test_mjx_rollout() -> None:
+    """Copies with different leads part, the loops of all hold, and a lead of half a turn is worst."""
+    pytest.importorskip("jax")
+    pytest.importorskip("mujoco.mjx")
+    found = runpy.run_path(str(EXAMPLES / "mjx_rollout.py"))["roll_out"](copies=4, duration=0.5)
+    assert np.isfinite(found["distance"]).all()
+    assert found["loop_gap"].max() < 1e-5
+    assert found["distance"].argmin() == 3  # the leads go from -90 to 180 deg
+    assert 0.5 < found["distance"].min() < found["distance"].max() < 1.0
+
+
+def replayed(*arguments: str, folder: Path) -> subprocess.CompletedProcess[str]:
+    """The example, in a process that cannot import fes_mj."""
+    command = [sys.executable, "-I", "-c", _REPLAY, str(EXAMPLES / "replay_moments.py"), *arguments]
+    return subprocess.run(command, capture_output=True, text=True, cwd=folder)
+
+
 def replay(model: Path) -> float:
-    """Mean crank power, W, that the example prints in a process that cannot import fes_mj."""
-    command = [sys.executable, "-I", "-c", _REPLAY, str(EXAMPLES / "replay_moments.py"), str(model)]
-    process = subprocess.run(command, capture_output=True, text=True, cwd=model.parent)
+    """Mean crank power that it prints, W."""
+    process = replayed(str(model), folder=model.parent)
     assert process.returncode == 0, process.stderr
     return float(re.search(r"crank power ([\d.-]+) W", process.stdout)[1])  # type: ignore[index]
 
@@ -48,7 +121,7 @@ _REPLAY = """
 import runpy, sys
 sys.modules["fes_mj"] = None
 sys.argv = sys.argv[1:]
-runpy.run_path(sys.argv[0])
+runpy.run_path(sys.argv[0], run_name="__main__")
 """
 
 
@@ -78,6 +151,41 @@ def test_replay_moments_notices_wrong_moments(tmp_path: Path) -> None:
     )
     expected = quasi_static(load_design("d1"), load_moments()).power_mean
     assert abs(replay(tmp_path / "model.xml") / expected - 1) > 0.1
+
+
+@pytest.mark.parametrize(
+    ("file", "said"),
+    [
+        ("", "give one model of `fes_mj export`"),
+        ("nowhere.xml", "nowhere.xml: there is no such file"),
+        ("model.csv", "model.csv: MuJoCo cannot load it"),
+        ("folder", "folder: there is no such file"),
+        ("scene.xml", "scene.csv: cannot read the table of joint moments: No such file or directory; give the model"),
+        ("passive.xml", "passive.xml: it has no motors knee, hip; export it without the variant passive"),
+        ("free.xml", "free.xml: nothing holds its crank"),
+        ("words.xml", "words.csv: this is no table of numbers"),
+        ("empty.xml", "empty.csv: this is no table of numbers"),
+        ("other.xml", "other.csv: the columns crank_Nm are not there"),
+    ],
+)
+def test_replay_moments_of_a_wrong_file_is_one_message(file: str, said: str, tmp_path: Path) -> None:
+    for name, variants in {"model": [], "passive": ["passive"], "free": ["free"]}.items():
+        flags = [flag for variant in variants for flag in ("--variant", variant)]
+        assert run(["export", "trt", "-o", str(tmp_path / f"{name}.xml"), *flags]) == 0
+    (tmp_path / "folder").mkdir()
+    model = (tmp_path / "model.xml").read_text()
+    tables = {"words": "a,b\n1,two\n", "empty": "", "other": "crank_angle_deg,knee_Nm,hip_Nm\n0,1,2\n"}
+    for name, table in tables.items():
+        (tmp_path / f"{name}.xml").write_text(model)
+        (tmp_path / f"{name}.csv").write_text(table)
+    scene = (ROOT / "mjcf/trt/scene.xml").read_text().replace("trt.xml", "model.xml")
+    (tmp_path / "scene.xml").write_text(scene)
+    process = replayed(*([file] if file else []), folder=tmp_path)
+    assert process.returncode == 2
+    assert process.stderr.startswith("replay_moments.py: ")
+    assert said in process.stderr
+    assert len(process.stderr.splitlines()) == 1
+    assert process.stdout == ""
 
 
 def test_no_example_is_left_out() -> None:

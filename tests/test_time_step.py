@@ -2,13 +2,15 @@
 
 from dataclasses import replace
 
+import mujoco
 import numpy as np
 import pytest
 
 import fes_mj
 from fes_mj.crosscheck import Case
+from fes_mj.errors import InputError
 from fes_mj.geometry import clearances
-from fes_mj.time_step import FEWEST_STEPS, MOST_STEPS, steps_per_turn
+from fes_mj.time_step import FEWEST_STEPS, LOOSE_STEPS, MOST_STEPS, loose_steps, steps_per_turn
 from fes_mj.units import RPM
 from tools.random_linkages import random_design
 
@@ -56,3 +58,33 @@ def test_the_near_edge_of_closing_agrees() -> None:
     moments = fes_mj.JointMoments("thorny", angle, 12 * np.cos(angle) + 3 * np.sin(7 * angle), 6 * np.sin(angle))
     case = Case(edge, moments, cadence=150 * RPM)
     assert case.agrees, [check for check in case.checks if not check.ok]
+
+
+@pytest.mark.parametrize("legs", [1, 2])
+@pytest.mark.parametrize("name", ["r1", "d2"])
+def test_the_steps_of_a_loose_crank_know_its_fastest_speed(name: str, legs: int) -> None:
+    """A turn in MuJoCo, or as far as it swings, is an independent way to the fastest speed."""
+    design = fes_mj.load_design(name)
+    cadence, steps = design.linkage.cadence, loose_steps(design, design.linkage.cadence, legs)
+    model = fes_mj.build_mjcf(design, legs=legs, driven=False, drawn=False).compile()
+    assert model.opt.timestep == pytest.approx(2 * np.pi / cadence / steps)
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    fastest, crank = 0.0, data.joint("crank")
+    while data.time < 3 and abs(crank.qpos[0]) < 2 * np.pi:
+        mujoco.mj_step(model, data)
+        fastest = max(fastest, abs(float(crank.qvel[0])))
+    assert LOOSE_STEPS * fastest / cadence == pytest.approx(steps, rel=2e-3)
+
+
+def test_without_weight_a_loose_crank_is_slower() -> None:
+    design = fes_mj.load_design("trt")
+    counts = [loose_steps(design, design.linkage.cadence, gravity=gravity) for gravity in (9.81, 4.9, 0.0)]
+    assert counts == sorted(counts, reverse=True)
+    assert counts[0] > counts[-1]
+
+
+def test_a_loose_crank_near_a_dead_centre_is_refused() -> None:
+    design = fes_mj.load_design("r2")
+    with pytest.raises(InputError, match="a loose crank would reach"):
+        loose_steps(design, design.linkage.cadence, gravity=1e9)

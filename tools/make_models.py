@@ -1,4 +1,7 @@
-"""Write mjcf/: each catalogued design as model, scene, table, README and picture (--no-pictures: all but that)."""
+"""Write mjcf/: each catalogued design as models, scene, table, README and picture (--no-pictures: all but that).
+
+With --pictures only the pictures, of the models that are there.
+"""
 
 from __future__ import annotations
 
@@ -14,12 +17,20 @@ from fes_mj.moments import JointMoments
 from fes_mj.moments_file import load_moments
 from fes_mj.simulation.export import mjcf_text, scene_text, sidecar_text
 from fes_mj.simulation.mjcf import build_mjcf
+from fes_mj.simulation.variants import variant_model, variant_options
 from fes_mj.statics import quasi_static
 from fes_mj.units import RPM
 
 TOOLS = Path(__file__).parent
 FOLDER = TOOLS.parent / "mjcf"
 WIDTH, HEIGHT = 960, 720  # pixels
+# What is shipped beside the default model: file name after the design's -> variants.
+SHIPPED = {
+    "compatible": ("compatible",),
+    "two-legs-free": ("two-legs", "free", "compatible"),
+    "ride": ("ride", "compatible"),
+    "ride-fixed-gear": ("ride", "fixed-gear", "compatible"),
+}
 POSE = 200.0  # deg of crank angle: leg and linkage are spread out in every design
 
 
@@ -27,8 +38,9 @@ def main() -> None:
     for name in DESIGNS:
         folder = FOLDER / name
         folder.mkdir(parents=True, exist_ok=True)
-        for file, text in model_files(load_design(name)).items():
-            write_text(folder / file, text)
+        if "--pictures" not in sys.argv:
+            for file, text in model_files(load_design(name)).items():
+                write_text(folder / file, text)
         if "--no-pictures" not in sys.argv:
             write_picture(folder / "scene.xml", folder / f"{name}.png")
         print(f"mjcf/{name}")
@@ -36,9 +48,12 @@ def main() -> None:
 
 def model_files(design: Design) -> dict[str, str]:
     """The text files of a design's folder by name."""
-    name, moments = design.name, load_moments()
+    name, moments, cadence = design.name, load_moments(), design.linkage.cadence
+    models = {f"{name}.xml": ()} | {f"{name}-{suffix}.xml": variants for suffix, variants in SHIPPED.items()}
     return {
-        f"{name}.xml": mjcf_text(build_mjcf(design)),
+        file: mjcf_text(variant_model(design, moments, cadence, variant_options(variants)))
+        for file, variants in models.items()
+    } | {
         "scene.xml": scene_text(design, f"{name}.xml"),
         f"{name}.csv": sidecar_text(design, moments),
         "README.md": _readme(design, moments),

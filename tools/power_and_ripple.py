@@ -1,8 +1,11 @@
 """The front of mean power against ripple for the coupler-driven tricycle, and how its designs ride.
 
-Writes results/optimization/: ripple.md, ripple.json, ripple.png and a design file for each winner. Takes some minutes.
+Writes results/optimization/: ripple.md, ripple.json, ripple.png and a design file for each winner. Takes some minutes;
+with --picture it only draws again what stands in ripple.json.
 """
 
+import json
+import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -122,12 +125,22 @@ def draw(rows: list[dict[str, Any]]) -> None:
             if not own:
                 axes.annotate(row["design"].upper(), point, xytext=(6, 4), textcoords="offset points")
         axes.set(xlabel="ripple of the crank speed, %", ylabel="mean power of one leg, W", xlim=(0, None))
-        axes.set_title("Squares: printed. Filled: rides with a freewheel on the slope its power balances")
+        axes.set_title("Power against ripple", loc="left")
+        for marker, face, label in (
+            ("o", "none", "found"),
+            ("s", "none", "printed"),
+            ("d", "black", "filled: rides with a freewheel on the slope its power balances"),
+        ):
+            axes.plot([], [], marker, color="black", mfc=face, label=label)
+        axes.legend(loc="lower right")
         figure.savefig(FOLDER / "ripple.png", dpi=150)
 
 
 def main() -> None:
     """Search, ride, write; after every design what is known by then."""
+    if "--picture" in sys.argv:
+        draw(json.loads((FOLDER / "ripple.json").read_text(encoding="utf-8"))["designs"])
+        return
     rows = [ridden(load_design(name), None) for name in PRINTED]
     for limit in LIMITS:
         rows.append(ridden(found(limit), limit))

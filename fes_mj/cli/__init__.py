@@ -22,6 +22,7 @@ COMMANDS = {
     "explain": "What a check guards against and what usually breaks it.",
     "reproduce": "Compute the paper's tables and figures and write them beside our own.",
     "moments": "Show what is understood of a file of joint moments, and convert it.",
+    "stimulation": "When to stimulate which muscles: crank-angle windows for a stimulator.",
     "explore": "Drag a design's dimensions in the browser and see at once what they do.",
     "view": "Watch a design run in MuJoCo's interactive viewer.",
 }

@@ -13,9 +13,8 @@ from fes_mj.text import printable
 
 _DEFAULTS = LoadOptions()
 _SCENE = "scene.xml"
-_Variant = Literal[
-    "sites", "bodies", "passive", "two-legs", "compatible", "ride"
-]  # the keys of simulation.export.VARIANTS
+# the keys of simulation.variants.VARIANTS
+_Variant = Literal["sites", "bodies", "passive", "free", "brake", "ride", "fixed-gear", "two-legs", "compatible"]
 
 
 def export(
@@ -36,14 +35,16 @@ def export(
     out
         The model to write (.xml); the table gets the same name with .csv.
     variant
-        sites: loops anchored at sites (default); bodies: on bodies, for Drake; passive: no servo and no joint
-        motors; two-legs: half a turn apart on one crank; compatible: Euler integrator and a flywheel, for readers
-        without `discrete`; ride: both legs on a tricycle that rides on a flat road with a freewheel. Give --variant
-        again to combine them.
+        sites: loops anchored at sites (default); bodies: on bodies, for Drake; passive: nothing drives, neither joint
+        motors nor servo; free: motors, but nothing on the crank; brake: a flywheel and a brake on it in place of the
+        servo; ride: both legs on a tricycle that rides on a flat road with a freewheel; fixed-gear: that one without
+        the freewheel; two-legs: half a turn apart on one crank; compatible: for readers without the integrator
+        `discrete`, a flywheel holds the cadence. Give --variant again to combine them.
     scene
         Also write scene.xml beside the model: floor, light and camera.
     """
-    from fes_mj.simulation.export import MARKS, mjcf_text, scene_text, sidecar_text, variant_model, variant_options
+    from fes_mj.simulation.export import MARKS, mjcf_text, scene_text, sidecar_text
+    from fes_mj.simulation.variants import variant_model, variant_options
 
     changes = variant_options(variant or ())
     legs = changes.get("legs", 1)

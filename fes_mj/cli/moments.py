@@ -7,16 +7,15 @@ from typing import Annotated
 import numpy as np
 from cyclopts import Parameter
 
-from fes_mj.cli.options import PrintOptions, warn_of
+from fes_mj.cli.options import PrintOptions, require_picture, warn_of
 from fes_mj.cli.static import span, with_error
 from fes_mj.console import print_table, say
-from fes_mj.errors import InputError, require_extra
+from fes_mj.errors import require_extra
 from fes_mj.files import json_text, require_writable, write_text
 from fes_mj.moments import GROUPS, JointMoments
 from fes_mj.moments_file import Measurement, load_measurement, load_moments, measured_files, moments_csv
 from fes_mj.units import RPM
 
-_PICTURES = (".png", ".svg")
 _DEFAULTS = PrintOptions()
 
 
@@ -44,8 +43,8 @@ def moments(
     for output, what, suffix in ((plot, "the plot", ""), (out, "the moments", ".csv")):
         if output:
             require_writable(output, what, suffix, inputs)
-    if plot and plot.suffix.lower() not in _PICTURES:
-        raise InputError(f"{plot}: cannot write the plot: the name must end in {' or '.join(_PICTURES)}")
+    if plot:
+        require_picture(plot)
     measurement = load_measurement(path) if path else Measurement.of(load_moments(file))
     warn_of(measurement.moments)
     if plot:

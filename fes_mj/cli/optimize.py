@@ -17,7 +17,6 @@ from fes_mj.cli.search_options import SearchOptions, shell_word
 from fes_mj.console import errors, print_table, progress_bar, say
 from fes_mj.design_file import design_toml, load_design
 from fes_mj.files import json_text, require_replaceable, require_writable, write_text
-from fes_mj.moments import GROUPS
 from fes_mj.text import printable
 
 if TYPE_CHECKING:
@@ -182,11 +181,7 @@ def _print(winner: Winner, outcome: Outcome) -> None:
         power = outcome.problem.evaluate(outcome.x[None]).power[0, 0]
         print_table(f"{people.statistic}: {power:.2f} W; by these riders", _RIDER_COLUMNS, rows)
     if front:
-        keep = np.unique(np.linspace(0, len(front.x) - 1, 12).astype(int))
-        cells = [(f"{number}", *(f"{power:.2f}" for power in front.power[number])) for number in keep]
-        print_table(f"Front, {len(keep)} of {len(front.x)} designs", ("design", *(f"{g}, W" for g in GROUPS)), cells)
-    if winner.gain and winner.gain.mean > 0 and not winner.gain.beyond_error:
-        say("note: the gain is within the error bar of the recovered moments; --caution 1 looks for a surer one")
-    if winner.reversals.knee > 2:
-        say("note: the knee swings more than once per turn of the crank; can the muscles follow?")
+        print_table(f"Front, {front.title}", front.columns, front.rows)
+    for note in winner.notes:
+        say(f"note: {note}")
     say("note: the design space is an assumption, see --problem")

@@ -1,5 +1,6 @@
 """Options that several commands share, and what they load."""
 
+import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Literal, NamedTuple
@@ -15,6 +16,22 @@ from fes_mj.moments_file import load_moments, measured_files
 from fes_mj.torque_velocity import load_torque_velocity
 from fes_mj.units import RPM
 from fes_mj.variables import VARIABLES
+
+
+class Range(NamedTuple):
+    """What an option may be."""
+
+    low: float
+    high: float
+    what: str
+
+    def require(self, option: str, value: float) -> None:
+        """Raise InputError for a value that is not in it."""
+        if not self.low <= value <= self.high:
+            raise InputError(f"--{option} is {value:g}; it must be {self.what} from {self.low:g} to {self.high:g}")
+
+
+LAG = Range(0, 1, "a time in s")
 
 
 class Loaded(NamedTuple):
@@ -135,6 +152,26 @@ def warn_of(moments: JointMoments) -> None:
         complain(f"{moments.name}: {each.text}")
     if moments.left:
         warn_of(moments.left)
+
+
+PICTURES = (".png", ".svg")
+
+
+def require_picture(plot: Path) -> None:
+    """Raise InputError unless the name says which kind of picture."""
+    if plot.suffix.lower() not in PICTURES:
+        raise InputError(f"{plot}: cannot write the plot: the name must end in {' or '.join(PICTURES)}")
+
+
+def require_lag(lag: float, design: Design, cadence: float) -> None:
+    """Raise InputError for a lag (s) that is none or takes a turn of the crank (rad/s) or more."""
+    LAG.require("lag", lag)
+    turn = 2 * math.pi / cadence
+    if lag >= turn:
+        raise InputError(
+            f"--lag is {lag:g}; it must be shorter than a turn of the crank, which takes {turn:.3g} s in "
+            f"{design.name} at {cadence / RPM:.4g} rpm: no stimulation can lead a muscle by more"
+        )
 
 
 def crank_speed(cadence: float | None, design: Design) -> float:

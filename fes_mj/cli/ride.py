@@ -6,15 +6,15 @@ import math
 import sys
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Parameter
 
-from fes_mj.cli.options import MomentsOptions, PrintOptions
+from fes_mj.cli.options import LAG, MomentsOptions, PrintOptions, Range, require_lag
 from fes_mj.cli.simulate import check_rows, conclude_checks
 from fes_mj.cli.static import what_moves
 from fes_mj.console import print_table, say
-from fes_mj.design import TRICYCLE_SPEED, Design
+from fes_mj.design import TRICYCLE_SPEED
 from fes_mj.design_file import load_design
 from fes_mj.errors import InputError, require_extra
 from fes_mj.files import json_text, require_folder, require_replaceable, require_writable, write_files
@@ -29,29 +29,16 @@ if TYPE_CHECKING:
     from fes_mj.starts import Starts
 
 
-class _Range(NamedTuple):
-    """What an option may be."""
-
-    low: float
-    high: float
-    what: str
-
-    def require(self, option: str, value: float) -> None:
-        """Raise InputError for a value that is not in it."""
-        if not self.low <= value <= self.high:
-            raise InputError(f"--{option} is {value:g}; it must be {self.what} from {self.low:g} to {self.high:g}")
-
-
 _RANGES = {
-    "slope": _Range(-30, 30, "a slope in percent that a tricycle may climb or descend,"),
-    "launch": _Range(0.1, 60, "a speed in km/h"),
-    "from-rest": _Range(0, 360, "a crank angle in degrees"),
-    "duration": _Range(1, 300, "a time in s"),
-    "lag": _Range(0, 1, "a time in s"),
-    "tricycle-mass": _Range(1, 500, "a mass in kg"),
-    "rolling-mass": _Range(0, 50, "a mass in kg"),
-    "crr": _Range(0, 0.5, "a force per weight"),
-    "drag-area": _Range(0, 10, "an area in m2"),
+    "slope": Range(-30, 30, "a slope in percent that a tricycle may climb or descend,"),
+    "launch": Range(0.1, 60, "a speed in km/h"),
+    "from-rest": Range(0, 360, "a crank angle in degrees"),
+    "duration": Range(1, 300, "a time in s"),
+    "lag": LAG,
+    "tricycle-mass": Range(1, 500, "a mass in kg"),
+    "rolling-mass": Range(0, 50, "a mass in kg"),
+    "crr": Range(0, 0.5, "a force per weight"),
+    "drag-area": Range(0, 10, "an area in m2"),
 }
 
 
@@ -114,7 +101,7 @@ class RideOptions(PrintOptions, MomentsOptions):
         if self.launch is not None and self.from_rest is not None:
             raise InputError("--launch and --from-rest exclude each other; a start from rest has no speed")
         design, moments = load_design(name, self.dims), self.load_moments(2)
-        self._check_lag(design)
+        require_lag(self.lag, design, design.linkage.cadence)
         if self.torque_velocity == "hill":
             moments = moments.at_speed(load_torque_velocity("hill"))
         if self.lag:
@@ -132,14 +119,6 @@ class RideOptions(PrintOptions, MomentsOptions):
             start=math.radians(self.from_rest or 0.0),
             duration=self.duration,
         )
-
-    def _check_lag(self, design: Design) -> None:
-        turn = 2 * math.pi / design.linkage.cadence
-        if self.lag >= turn:
-            raise InputError(
-                f"--lag is {self.lag:g}; it must be shorter than a turn of the crank, which takes {turn:.3g} s in "
-                f"{design.name} at {TRICYCLE_SPEED / KMH:g} km/h: no stimulation can lead a muscle by more"
-            )
 
 
 _DEFAULTS = RideOptions()

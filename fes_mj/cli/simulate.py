@@ -25,6 +25,7 @@ from fes_mj.console import conclude, number, print_table, say, verdict
 from fes_mj.errors import InputError
 from fes_mj.files import json_text, require_folder, require_replaceable, require_writable, write_files
 from fes_mj.time_step import LONGEST_TIMESTEP
+from fes_mj.units import RPM
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -36,6 +37,7 @@ if TYPE_CHECKING:
 
 _DEFAULTS = RunOptions()
 MOST_TURNS = 1000
+TURN_SHOWN = (0.1, 60.0)  # s, shortest and longest of a turn in a video
 
 
 def simulate(
@@ -44,6 +46,7 @@ def simulate(
     *,
     options: RunOptions = _DEFAULTS,
     render: Path | None = None,
+    speed: float | None = None,
     out: Path | None = None,
     timestep: float | None = None,
     turns: int = 1,
@@ -57,6 +60,8 @@ def simulate(
         trt, r1, r2, d1, d2, or a path to a design file.
     render
         Write a video (.mp4) of the moving legs and linkage beside the crank power.
+    speed
+        Of the video: 1 is the true one. By default a turn takes 4 s.
     out
         Existing folder for the result (JSON), the cycle (CSV) and the model (MJCF).
     timestep
@@ -71,6 +76,7 @@ def simulate(
     _check(timestep, turns)
     if render:
         require_writable(render, "the video", ".mp4", inputs)
+    _check_speed(speed, loaded.cadence, render)
     from fes_mj.crosscheck import Case
 
     case = Case(*loaded, timestep, turns, legs)
@@ -84,7 +90,7 @@ def simulate(
     if render:
         from fes_mj.viewing.render import render_video
 
-        render_video(case, render, quiet=options.quiet)
+        render_video(case, render, speed, options.quiet)
         if not options.silent:
             say(f"video: {render}")
     return 0 if case.agrees else 1
@@ -101,6 +107,20 @@ def _check(timestep: float | None, turns: int) -> None:
         raise InputError(f"--timestep is {timestep:g}; it must be above 0 and at most {LONGEST_TIMESTEP:g} s")
     if not 1 <= turns <= MOST_TURNS:
         raise InputError(f"--turns is {turns}; it must be from 1 to {MOST_TURNS}")
+
+
+def _check_speed(speed: float | None, cadence: float, render: Path | None) -> None:
+    """Refuse a speed of no video, or one at which a turn at this cadence (rad/s) is too short or too long to watch."""
+    if speed is None:
+        return
+    if not render:
+        raise InputError("--speed is that of a video; it needs --render OUT.mp4")
+    longest, shortest = (2 * np.pi / (cadence * seconds) for seconds in TURN_SHOWN)
+    if not shortest <= speed <= longest:
+        raise InputError(
+            f"--speed is {speed:g}; at {cadence / RPM:.1f} rpm it must be from {shortest:.3g} to {longest:.3g}, with "
+            f"which a turn takes {TURN_SHOWN[1]:g} to {TURN_SHOWN[0]:g} s"
+        )
 
 
 def check_rows(checks: Sequence[Check]) -> list[tuple[str, str, str, Text]]:

@@ -1,7 +1,6 @@
 """Where every body is over the turn, how it is drawn, and a linkage that cannot close: it is left open there."""
 
-from collections.abc import Iterator
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -9,30 +8,11 @@ from fes_mj.arrays import ComplexArray, FloatArray
 from fes_mj.design import BODIES, Design
 from fes_mj.geometry import DYADS, LEAST_CLEARANCE, clearances
 from fes_mj.kinematics import close_dyad, positions
-from fes_mj.segments import foot_points
-from fes_mj.simulation.appearance import BACKREST, PARTS, SEAT_DEPTH, SEAT_LENGTH
+from fes_mj.simulation.appearance import PARTS
 from fes_mj.style import hex_colour
+from fes_mj.viewing.bars import bars
 
 Ends = dict[str, tuple[ComplexArray, ComplexArray]]  # body -> its origin and tip over crank angle, m
-
-
-class Bar(NamedTuple):
-    """A thick line that is drawn, in the frame of a body ("" is the tricycle): ends and thickness in m."""
-
-    body: str
-    part: str
-    start: complex
-    end: complex
-
-    def as_json(self) -> dict[str, Any]:
-        """As the page reads it; the colour is the video's."""
-        part = PARTS[self.part]
-        return {
-            "body": self.body,
-            "line": [self.start.real, self.start.imag, self.end.real, self.end.imag],
-            "width": 2 * part.size,
-            "colour": hex_colour(part.colour),
-        }
 
 
 def ends(design: Design, crank_angle: FloatArray) -> Ends:
@@ -78,31 +58,6 @@ def failing_angle(design: Design) -> float | None:
         if not each.margin[0] >= LEAST_CLEARANCE:
             return float(each.crank_angle[0])
     return None
-
-
-def bars(design: Design) -> Iterator[Bar]:
-    """What is drawn, from back to front: the tricycle, the leg, then the linkage beside it, as in the video."""
-    linkage, corner = design.linkage, SEAT_DEPTH * (0.5 - 1j)
-    yield Bar("", "frame", corner, complex(linkage.ground))
-    yield Bar("", "frame", complex(linkage.ground), complex(linkage.crank_centre))
-    yield Bar("", "seat", corner, corner - SEAT_LENGTH)
-    yield Bar("", "seat", corner, corner + BACKREST * complex(np.exp(1j * linkage.seat_angle)))
-    ankle, heel, toe = foot_points(design)
-    sole, radius = (toe - heel) / abs(toe - heel), PARTS["boot"].size
-    yield Bar("thigh", "thigh", 0j, complex(design.rider.thigh))
-    yield Bar("shank", "shank", 0j, ankle)
-    yield Bar("shank", "boot", 0.6 * ankle, ankle)
-    yield Bar("shank", "boot", heel + radius * sole, toe - radius * sole)
-    pedal_body, lengths = linkage.architecture.pedal_body, design.link_lengths
-    for body in ("coupler", "crank", "rocker"):
-        if body in lengths:
-            tip = complex(lengths[body])
-            yield Bar(body, body, 0j, tip)
-            if body == pedal_body != "crank":
-                pedal = tip * complex(linkage.pedal_offset)
-                yield Bar(body, body, tip if body == "rocker" else 0j, pedal)
-                if body == "coupler":
-                    yield Bar(body, body, pedal, tip)
 
 
 def as_json(design: Design, crank_angle: FloatArray) -> dict[str, Any]:

@@ -41,6 +41,7 @@ class Outcome:
             "evaluations": self.evaluations,
             **{f"mean_{joint}_speed_deg_s": speed for joint, speed in winner.joint_speed.items()},
             "reversals_per_turn": dict(winner.reversals.items()),
+            **winner.smoothness,
             "simulated_power_mean_W": case.simulation.power_mean,
             "relative_difference": case.relative_difference,
             "timestep_s": case.simulation.timestep,

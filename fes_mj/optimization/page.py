@@ -1,15 +1,21 @@
-"""A page on one found design: numbers, motion, power, constraints; HTML with everything inside."""
+"""A page on one found design: numbers, motion, power, constraints, front; HTML with everything inside."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
+from fes_mj.arrays import FloatArray
 from fes_mj.design_file import design_toml
+from fes_mj.moments import GROUPS
 from fes_mj.optimization.outcome import Outcome
+from fes_mj.optimization.pareto import FLUCTUATION, Front
 from fes_mj.optimization.winner import Winner
 from fes_mj.statics import quasi_static
-from fes_mj.style import COLOURS, STYLE
+from fes_mj.style import COLOURS, INK, SERIES
 from fes_mj.viewing.pages import page
+
+POSE = np.radians(200.0)  # crank angle at which leg and linkage are spread out
 
 
 def page_html(winner: Winner, outcome: Outcome, origin: str) -> str:
@@ -17,35 +23,57 @@ def page_html(winner: Winner, outcome: Outcome, origin: str) -> str:
 
     Raises MissingPartError without the extra "report".
     """
-    from markupsafe import Markup
-
+    front = outcome.front
     return page(
         Path(__file__).with_name("page.html.j2"),
         winner=winner,
         origin=origin.splitlines(),
-        rows=winner.rows,
         constraints=outcome.limit_rows,
         space=outcome.problem.limits.space,
-        figure=Markup(_figure(winner)),
+        figures=_figures(winner),
+        front=front,
+        front_figures=_front_figures(front, outcome.x) if front else (),
         toml=design_toml(winner.design, origin),
     )
 
 
-def _figure(winner: Winner) -> str:
+def _figures(winner: Winner) -> list[str]:
     """The linkage with the paths of pedal and knee, and crank power over a turn, as SVG."""
     import matplotlib as mpl
-    from matplotlib.figure import Figure
 
-    from fes_mj.viewing.charts import draw_linkage, plot_power, svg_text
+    from fes_mj.viewing.charts import READABLE, draw_linkage, over_turn, page_axes, page_svg, plot_power
 
-    with mpl.rc_context(STYLE):
-        figure = Figure(figsize=(10, 4), layout="constrained")
-        linkage, power = figure.subplots(1, 2)
-        draw_linkage(linkage, winner.design, 0.0)
-        linkage.legend(fontsize="small")
+    with mpl.rc_context(READABLE):
+        drawing, (linkage,) = page_axes()
+        draw_linkage(linkage, winner.design, POSE)
+        curves, (power,) = page_axes()
         plot_power(power, winner.case, ("mujoco", "quasi-static"))
-        other = quasi_static(winner.compared_with, winner.case.moments, points=360)
+        other = quasi_static(winner.compared_with, winner.case.moments)
         label = f"{winner.compared_with.name}, quasi-static"
-        power.plot(np.arange(360), other.power, "--", color=COLOURS["comparison"], lw=1, label=label)
-        power.legend(fontsize="small")
-        return svg_text(figure)
+        curve = over_turn(other.crank_angle, other.power)
+        power.plot(*curve, "--", color=COLOURS["comparison"], lw=1, label=label)
+        return [page_svg(drawing, linkage), page_svg(curves, power)]
+
+
+def _front_figures(front: Front, chosen: FloatArray) -> list[str]:
+    """The powers of both groups against each other and, where smoothness was an objective, over it; as SVG."""
+    import matplotlib as mpl
+
+    from fes_mj.viewing.charts import READABLE, page_axes, page_svg
+
+    star: dict[str, Any] = {"marker": "*", "ms": 14, "mfc": "none", "color": INK, "ls": "none"}
+    best, smooth = int(np.argmin(np.abs(front.x - chosen).sum(axis=1))), front.fluctuation
+    with mpl.rc_context(READABLE):
+        figure, (axes,) = page_axes()
+        dots = axes.scatter(front.power[:, 0], front.power[:, 1], c=SERIES[0] if smooth is None else smooth, s=18)
+        axes.plot(*front.power[best], **star, label="this design")
+        axes.set(xlabel=f"mean crank power {GROUPS[0]}, W", ylabel=f"{GROUPS[1]}, W")
+        if smooth is None:
+            return [page_svg(figure, axes)]
+        figure.colorbar(dots, label=FLUCTUATION)
+        over, (below,) = page_axes()
+        for group, power, colour in zip(GROUPS, front.power.T, SERIES, strict=False):
+            below.plot(smooth, power, ".", color=colour, label=group)
+            below.plot(smooth[best], power[best], **star)
+        below.set(xlabel=f"{FLUCTUATION}, two legs, {GROUPS[0]}", ylabel="mean crank power, W")
+        return [page_svg(figure, axes), page_svg(over, below)]

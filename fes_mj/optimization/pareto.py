@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from fes_mj import kinematics
-from fes_mj.arrays import FloatArray
+from fes_mj.arrays import FloatArray, IntArray
 from fes_mj.batch import take
 from fes_mj.design import Design
 from fes_mj.errors import InputError, require_extra
@@ -20,6 +20,8 @@ from fes_mj.torque_map import torque_map
 from fes_mj.variables import LENGTHS
 
 POPULATION = 100
+FLUCTUATION = "fluctuation of energy"  # the coefficient, see fluctuation()
+_ROWS = 12  # of the front's table
 CSV_MARK = f"power_{GROUPS[0]}_W,power_{GROUPS[1]}_W,{VARIED[0]},"
 
 
@@ -47,8 +49,34 @@ class Front:
 
     def as_csv(self) -> str:
         """A row a design; CSV_MARK begins it."""
-        columns = np.column_stack([self.power, self.x]).T
-        return csv_text(dict(zip([*(f"power_{group}_W" for group in GROUPS), *VARIED], columns, strict=True)))
+        names, columns = [*(f"power_{group}_W" for group in GROUPS), *VARIED], [*self.power.T, *self.x.T]
+        if self.fluctuation is not None:
+            names, columns = [*names, "fluctuation"], [*columns, self.fluctuation]
+        return csv_text(dict(zip(names, columns, strict=True)))
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """Of `rows`."""
+        smooth = () if self.fluctuation is None else (FLUCTUATION,)
+        return ("design", *(f"{group}, W" for group in GROUPS), *smooth)
+
+    @property
+    def rows(self) -> list[tuple[str, ...]]:
+        """Some designs all along the front: number, powers and, if it was an objective, fluctuation, as text."""
+        rows = []
+        for number in self._shown:
+            cells = (f"{number}", *(f"{power:.2f}" for power in self.power[number]))
+            rows.append(cells if self.fluctuation is None else (*cells, f"{self.fluctuation[number]:.3f}"))
+        return rows
+
+    @property
+    def title(self) -> str:
+        """How many of the designs stand in `rows`."""
+        return f"{len(self._shown)} of {len(self.x)} designs"
+
+    @property
+    def _shown(self) -> IntArray:
+        return np.unique(np.linspace(0, len(self.x) - 1, _ROWS).astype(int))
 
 
 def pareto_front(

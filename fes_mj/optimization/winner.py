@@ -11,6 +11,8 @@ from fes_mj.joints import PerJoint
 from fes_mj.moments import JointMoments
 from fes_mj.optimization.confidence import Gain
 from fes_mj.optimization.tolerance import Tolerance, to_manufacturing, to_rider
+from fes_mj.reduced import steady_ripple
+from fes_mj.ride import Ride
 from fes_mj.statics import difference_sd, quasi_static
 
 
@@ -18,14 +20,16 @@ from fes_mj.statics import difference_sd, quasi_static
 class Winner:
     """A design with everything that was found out about it.
 
-    case: simulated and cross-checked. joint_speed: mean absolute, deg/s. reversals: of each joint in a turn. gain:
-    over `compared_with` under the same moments, None for moments without error bars.
+    case: simulated and cross-checked. joint_speed: mean absolute, deg/s. reversals: of each joint in a turn. ripple: of
+    the crank speed, reduced.steady_ripple. gain: over `compared_with` under the same moments, None for moments without
+    error bars.
     """
 
     case: Case
     compared_with: Design
     joint_speed: PerJoint[float]
     reversals: PerJoint[int]
+    ripple: float
     gain: Gain | None
     manufacturing: Tolerance
     rider: Tolerance
@@ -35,9 +39,30 @@ class Winner:
         return self.case.design
 
     @property
+    def smoothness(self) -> dict[str, float]:
+        """How uneven it is, as JSON names and units it: crank power of one leg as simulated, and the crank's speed."""
+        power = self.case.simulation.power
+        return {
+            "power_lowest_W": float(power.min()),
+            "power_highest_W": float(power.max()),
+            "power_peak_to_peak_W": float(np.ptp(power)),
+            "speed_ripple": self.ripple,
+        }
+
+    @property
+    def notes(self) -> list[str]:
+        """What to beware of."""
+        notes = []
+        if self.gain and self.gain.mean > 0 and not self.gain.beyond_error:
+            notes.append("the gain is within the error bar of the recovered moments; --caution 1 looks for a surer one")
+        if self.reversals.knee > 2:
+            notes.append("the knee swings more than once per turn of the crank; can the muscles follow?")
+        return notes
+
+    @property
     def rows(self) -> list[tuple[str, str]]:
         """What was found out, as text."""
-        static, run = self.case.static, self.case.simulation
+        static, run, uneven = self.case.static, self.case.simulation, self.smoothness
         cells = [
             ("mean crank power by statics, W", f"{static.power_mean:.3f}"),
             ("mean crank power simulated, W", f"{run.power_mean:.3f}"),
@@ -45,6 +70,12 @@ class Winner:
             ("work per turn, J", f"{static.work_per_turn:.3f}"),
             ("cadence, rpm", f"{static.summary()['cadence_rpm']:.1f}"),
             *((f"mean {joint} speed, deg/s", f"{speed:.1f}") for joint, speed in self.joint_speed.items()),
+            (
+                "simulated power of one leg, lowest to highest, W",
+                f"{uneven['power_lowest_W']:+.0f} to {uneven['power_highest_W']:+.0f}",
+            ),
+            ("the same, peak to peak, W", f"{uneven['power_peak_to_peak_W']:.0f}"),
+            ("ripple of the crank speed, two legs, fixed gear, %", f"{100 * self.ripple:.1f}"),
             ("reversals of knee and hip in a turn", f"{self.reversals.knee}, {self.reversals.hip}"),
         ]
         if self.gain:
@@ -64,6 +95,7 @@ def assess(design: Design, compared_with: Design, moments: JointMoments, seed: i
         compared_with=compared_with,
         joint_speed=joint_speeds(design, table),
         reversals=cycles(design, table).reversals.map(lambda count: int(count[0])),
+        ripple=steady_ripple(Ride(design, moments, transmission="fixed")),
         gain=gain_over(design, compared_with, moments),
         manufacturing=to_manufacturing(design, table, random),
         rider=to_rider(design, table, random),

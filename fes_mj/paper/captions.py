@@ -1,9 +1,9 @@
-"""Tables with the titles, columns and notes of data/captions.toml."""
+"""Tables and figures with the titles, columns and notes of data/captions.toml."""
 
 from collections.abc import Sequence
 from typing import Any
 
-from fes_mj.files import read_toml
+from fes_mj.files import Section, read_toml
 from fes_mj.paper.printed import DATA
 from fes_mj.table import Table
 
@@ -13,7 +13,7 @@ def captioned(name: str, rows: list[tuple[Any, ...]], **values: Sequence[str] | 
 
     A column with a list in its braces is repeated for each.
     """
-    caption, columns = read_toml(DATA / "captions.toml", "captions").section(name).content, {}
+    caption, columns = _captions().section(name).content, {}
     for column in caption["columns"]:
         title, _, form = column.partition(" @")
         key = title.partition("{")[2].partition("}")[0]
@@ -21,3 +21,13 @@ def captioned(name: str, rows: list[tuple[Any, ...]], **values: Sequence[str] | 
             columns[title.format(**{key: value})] = form
     texts = {key: value for key, value in values.items() if isinstance(value, str)}
     return Table(caption["title"], columns, rows, caption.get("note", "").format(**texts))
+
+
+def figure_section(name: str) -> str:
+    """A figure on a page in Markdown: title, picture, caption."""
+    caption = _captions().section("figure").section(name).content
+    return f"## {caption['title']}\n\n![{caption['title']}](figures/{name}.png)\n\n{caption['note']}\n"
+
+
+def _captions() -> Section:
+    return read_toml(DATA / "captions.toml", "captions")

@@ -1,6 +1,6 @@
 """The paper's figures from our numbers, and one it lacks."""
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import product
 from typing import Any
 
@@ -22,7 +22,7 @@ from fes_mj.paper.riding import Riding
 from fes_mj.paper.runs import Runs
 from fes_mj.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.ride import TRANSMISSIONS
-from fes_mj.style import COLOURS, CRANK_LABEL, LINKS, X_LABEL
+from fes_mj.style import COLOURS, CRANK_LABEL, FAINT, LINKS, X_LABEL
 from fes_mj.uncertainty import power_rows
 from fes_mj.units import KMH
 from fes_mj.viewing.charts import draw_linkage, over_turn, turn_axis
@@ -34,19 +34,19 @@ _TURN = np.radians(np.arange(0.0, 360.5, 1.0))
 def moments_over_crank(runs: Runs, known: Known) -> Figure:
     """Figure 1: recovered joint moments over the TRT's crank angle, before and after the text."""
     figure, axes = _grid(2, 2, (7.2, 5.2))
-    top = np.degrees(PAPER_TRICYCLE.top_dead_centre)
-    label = f"crank angle, deg (0: backwards, tdc: {top:.1f})"
+    top = PAPER_TRICYCLE.top_dead_centre
     for ax, group, title, posterior in _before_and_after(axes, known):
         for joint in JOINTS:
-            _band(ax, np.degrees(_TURN) + top, posterior.curve(joint, _TURN), joint, joint)
-        _label(ax, f"{group.upper()}, {title}", label, "joint moment, N m")
+            _band(ax, np.degrees(_TURN), posterior.curve(joint, _TURN - top), joint, joint)
+        ax.axvline(np.degrees(top), color=FAINT, lw=0.8, ls=":", label="top dead centre")
+        _turn(ax, f"{group.upper()}, {title}", "joint moment, N m")
     axes.flat[0].legend(title="mean, band of one sd")
     return figure
 
 
 def power_of_the_trt(runs: Runs, known: Known) -> Figure:
     """Figure 4: power of knee, hip and leg in the TRT over the turn, before and after the text."""
-    figure, axes = _grid(2, 2, (7.2, 5.6))
+    figure, axes = _grid(3, 2, (7.2, 6.8), sharey="row", height_ratios=(2, 2, 1))
     _powers(axes, runs, known, "trt")
     _legend_below(figure, axes)
     return figure
@@ -63,7 +63,7 @@ def moments_over_joint_angle(runs: Runs, known: Known) -> Figure:
 
 
 def design_space(runs: Runs, known: Known) -> Figure:
-    """Figure 10, as far as the text gives it: where crank centres and rocker pivots lie."""
+    """Figure 10: where crank centres and rocker pivots lie."""
     figure, axes = _grid(1, 1, (6.0, 3.4))
     (ax,) = axes.flat
     ax.plot(0, 0, "ko", label="hip")
@@ -77,7 +77,7 @@ def design_space(runs: Runs, known: Known) -> Figure:
             ax.plot(point.real, point.imag, markers[name], color=LINKS[body], label=label)
     trt = runs.static["trt", "p1p2"].design.linkage.crank_centre
     ax.plot(trt.real, trt.imag, "*", ms=9, color=LINKS["crank"], label="TRT crank centre")
-    _label(ax, "Where the hip, the rocker pivots and the crank centres lie", X_LABEL, "y, m")
+    _label(ax, "Rocker pivots and crank centres", X_LABEL, "y, m")
     ax.set_aspect("equal")
     ax.xaxis.set_inverted(True)
     ax.legend(loc="center left", bbox_to_anchor=(1.01, 0.5))
@@ -100,8 +100,8 @@ def truncated_maps(runs: Runs, known: Known) -> Figure:
 
 def power_of_r2_and_d1(runs: Runs, known: Known) -> Figure:
     """Figure 12: power of R2 and D1 over the turn, both groups, before and after the text."""
-    figure, axes = _grid(4, 2, (7.2, 7.6), sharey="row")
-    for rows, name in zip((axes[:2], axes[2:]), ("r2", "d1"), strict=True):
+    figure, axes = _grid(6, 2, (7.2, 8.2), sharey="row", height_ratios=(2, 2, 1) * 2)
+    for rows, name in zip((axes[:3], axes[3:]), ("r2", "d1"), strict=True):
         _powers(rows, runs, known, name)
     _legend_below(figure, axes)
     return figure
@@ -113,9 +113,10 @@ def d1_to_scale(runs: Runs, known: Known) -> Figure:
     (ax,) = axes.flat
     design, angle = runs.static["d1", "p1p2"].design, np.radians(60.0)
     draw_linkage(ax, design, float(angle), ("knee", "pedal", "crank_pin", "rocker_joint"))
+    readable = {"fc": "white", "alpha": 0.8, "lw": 0, "pad": 1}
     for name, jet in solve(design, np.array([angle])).points.items():
-        point = complex(np.ravel(jet.value)[0])
-        ax.annotate(name.replace("_", " "), (point.real, point.imag), xytext=(5, 5), textcoords="offset points")
+        point, text = complex(np.ravel(jet.value)[0]), name.replace("_", " ")
+        ax.annotate(text, (point.real, point.imag), xytext=(6, 6), textcoords="offset points", bbox=readable)
     ax.set_title("D1 at 60 deg of crank angle; squares are fixed to the frame", loc="left", weight="bold")
     ax.legend(loc="upper left")
     return figure
@@ -213,9 +214,11 @@ FIGURES: dict[str, Callable[[Runs, Known], Figure]] = {
 }
 
 
-def _grid(rows: int, columns: int, size: tuple[float, float], sharey: Any = True) -> tuple[Figure, Any]:
+def _grid(
+    rows: int, columns: int, size: tuple[float, float], sharey: Any = True, height_ratios: Sequence[int] | None = None
+) -> tuple[Figure, Any]:
     figure = Figure(figsize=size, layout="constrained")
-    return figure, figure.subplots(rows, columns, squeeze=False, sharey=sharey)
+    return figure, figure.subplots(rows, columns, squeeze=False, sharey=sharey, height_ratios=height_ratios)
 
 
 def _label(ax: Axes, title: str, x: str, y: str) -> None:
@@ -225,14 +228,17 @@ def _label(ax: Axes, title: str, x: str, y: str) -> None:
     ax.label_outer()
 
 
-def _turn(ax: Axes, title: str) -> None:
+def _turn(ax: Axes, title: str, y: str = "crank power, W") -> None:
     turn_axis(ax)
-    _label(ax, title, CRANK_LABEL, "crank power, W")
+    _label(ax, title, CRANK_LABEL, y)
 
 
 def _legend_below(figure: Figure, axes: Any, columns: int = 3) -> None:
-    handles, labels = axes.flat[-1].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=columns)
+    """Of all that the axes show, each once."""
+    shown = [each for ax in axes.flat for each in zip(*ax.get_legend_handles_labels()[::-1], strict=True)]
+    entries = dict(reversed(shown))
+    labels = [*dict.fromkeys(label for label, _ in shown)]
+    figure.legend([entries[label] for label in labels], labels, loc="outside lower center", ncols=columns)
 
 
 def _band(ax: Axes, x: Any, curve: tuple[Any, Any], colour: str, label: str, style: str = "-") -> None:
@@ -256,14 +262,14 @@ def _maps(ax: Axes, posterior: Posterior, ranges: Iterable[tuple[str, tuple[floa
 
 
 def _before_and_after(axes: Any, known: Known) -> Iterator[tuple[Axes, str, str, Posterior]]:
-    """Each of 2 x 2 axes with group, stage in words and posterior: a row for each stage."""
-    for row, stage, title in zip(axes, known.stages, STAGES, strict=True):
+    """Each of the first 2 x 2 axes with group, stage in words and posterior: a row for each stage."""
+    for row, stage, title in zip(axes[:2], known.stages, STAGES, strict=True):
         for ax, (group, posterior) in zip(row, stage.posteriors.items(), strict=True):
             yield ax, group, title, posterior
 
 
 def _powers(axes: Any, runs: Runs, known: Known, name: str) -> None:
-    """Quasi-static power of knee, hip and, with its sd, both; below, of the curves that ship, MuJoCo's too."""
+    """Quasi-static power of knee, hip and, with its sd, both; of the curves that ship MuJoCo's too, with residuals."""
     for ax, group, title, posterior in _before_and_after(axes, known):
         static = runs.static[name, group]
         rows = power_rows(static.motion, static.cadence, PAPER_TRICYCLE)
@@ -273,15 +279,23 @@ def _powers(axes: Any, runs: Runs, known: Known, name: str) -> None:
             ax.plot(*curve, color=COLOURS[joint], label=f"{joint}, quasi-static")
         angle, *both = over_turn(static.crank_angle, *posterior.predict_all(rows))
         _band(ax, angle, (both[0], both[1]), "quasi-static", "both, quasi-static")
-        if posterior is known.text.posteriors[group]:
-            _simulated(ax, runs.dynamic[name, group, 1])
         mean_power, deviation = posterior.predict(static.power_weights)
         _turn(ax, f"{name.upper()}, {group.upper()}, {title}: {mean_power:.1f} ± {deviation:.1f} W")
+    for simulated, residual, group in zip(*axes[1:], GROUPS, strict=True):
+        _simulated(simulated, residual, runs.dynamic[name, group, 1])
+        _turn(residual, "", "residual, W")
 
 
-def _simulated(ax: Axes, case: Case) -> None:
-    """MuJoCo's power with next to no masses (dots) and with all."""
-    massless = over_turn(case.massless.crank_angle, case.massless.power, points=40)
-    ax.plot(*massless, ".", color=COLOURS["mujoco"], ms=4, label="MuJoCo, nearly massless")
-    massive = over_turn(case.simulation.crank_angle, case.simulation.power)
-    ax.plot(*massive, color=COLOURS["mujoco"], lw=0.9, ls=(0, (4, 2)), label="MuJoCo, with segment masses")
+def _simulated(ax: Axes, residual: Axes, case: Case) -> None:
+    """MuJoCo's power with next to no masses (dots) and with all, and what each misses of the exact curve."""
+    massless, massive = case.massless, case.simulation
+    dots = over_turn(massless.crank_angle, massless.power, points=40)
+    ax.plot(*dots, ".", color=COLOURS["mujoco"], ms=4, label="MuJoCo, nearly massless")
+    curve = over_turn(massive.crank_angle, massive.power)
+    ax.plot(*curve, color=COLOURS["mujoco"], lw=0.9, ls=(0, (4, 2)), label="MuJoCo, with segment masses")
+    for run, scale, colour, label in (
+        (massless, 0.0, "quasi-static", "nearly massless, less quasi-static"),
+        (massive, 1.0, "reference", "with masses, less exact inverse dynamics"),
+    ):
+        missed = run.power - case.reference_power(run, scale)
+        residual.plot(*over_turn(run.crank_angle, missed), color=COLOURS[colour], lw=1, label=label)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
@@ -23,6 +23,7 @@ from fes_mj.paper import (
     tables,
     work_shares,
 )
+from fes_mj.paper.captions import figure_section
 from fes_mj.paper.evidence import load_evidence
 from fes_mj.paper.known import Known, known
 from fes_mj.paper.printed import DATA
@@ -57,7 +58,10 @@ def reproduce(folder: Path, done: Done, svg: bool = False) -> list[Path]:
 
     facts, runs = known(load_evidence()), run_all(done)
     pages = _pages(facts, runs, done)
-    contents: dict[Path, str | bytes] = {folder / name: _page(*page) for name, page in pages.items()}
+    contents: dict[Path, str | bytes] = {
+        folder / name: _page(title, (table.markdown() for table in page)) for name, (title, page) in pages.items()
+    }
+    contents[folder / "figures.md"] = figures_page()
     for name, draw in FIGURES.items():
         contents |= _figure(folder / "figures" / name, partial(draw, runs, facts), svg)
         done()
@@ -164,9 +168,16 @@ def inputs() -> list[Path]:
     return [*shared, *sorted((DATA / "designs").glob("*/*")), *sorted((DATA / "moments").iterdir())]
 
 
-def _page(title: str, contents: list[Table]) -> str:
+def figures_page() -> str:
+    """The page with every figure and its caption."""
+    from fes_mj.paper.figures import FIGURES
+
+    return _page("Figures", map(figure_section, FIGURES))
+
+
+def _page(title: str, sections: Iterable[str]) -> str:
     origin = "Written by `fes_mj reproduce`; versions and inputs: reproduction.json. Errors are one standard deviation."
-    return "\n".join([f"# {title}\n", f"{origin}\n", *(table.markdown() for table in contents)])
+    return "\n".join([f"# {title}\n", f"{origin}\n", *sections])
 
 
 def _figure(stem: Path, draw: Callable[[], Figure], svg: bool) -> dict[Path, bytes]:

@@ -19,10 +19,15 @@ from fes_mj.kinematics import Motion
 from fes_mj.segments import GRAVITY, Inertia, combine, inertias
 from fes_mj.simulation import appearance
 from fes_mj.simulation.appearance import Spec
-from fes_mj.time_step import steps_per_turn
+from fes_mj.time_step import loose_steps, steps_per_turn
 from fes_mj.units import RPM
 
-INTEGRATORS = {"discrete": mujoco.mjtIntegrator.mjINT_DISCRETE, "euler": mujoco.mjtIntegrator.mjINT_EULER}
+INTEGRATORS = {
+    "discrete": mujoco.mjtIntegrator.mjINT_DISCRETE,
+    "euler": mujoco.mjtIntegrator.mjINT_EULER,
+    "implicitfast": mujoco.mjtIntegrator.mjINT_IMPLICITFAST,
+    "rk4": mujoco.mjtIntegrator.mjINT_RK4,
+}
 SERVO = "crank_servo"
 SERVO_GAIN = 1e11  # N m s/rad; 1e6 lets the cadence ripple by twice its limit at 1 rpm (results/settings.md)
 FLYWHEEL = 1e6  # kg m^2 of crank armature; holds the cadence to 1e-6 without a servo
@@ -51,27 +56,32 @@ def build_mjcf(
     loop_solref: tuple[float, float] | None = None,
     anchors: Literal["sites", "bodies"] = "sites",
     driven: bool = True,
-    integrator: Literal["discrete", "euler"] = "discrete",
+    held: bool = True,
+    compatible: bool = False,
     drawn: bool = True,
 ) -> Spec:
     """The model of a design at a cadence (rad/s, by default Eq. 16), assembled, with a keyframe at crank angle 0.
 
     timestep: s; rounded so that a turn is a whole number of steps. mass_scale: factor on every mass and inertia.
     loop_solref: MuJoCo's time constant (s) and damping ratio of the loops, by default LOOP_SOLREF.
-    anchors: what the loops are closed between. driven: with joint motors and a cadence that is held, by a servo or,
-    with integrator "euler", which a stiff servo makes unstable, by a flywheel.
+    anchors: what the loops are closed between. driven: with joint motors and, if also `held`, with a cadence that is
+    held: by a servo, which needs the integrator `discrete`, or if `compatible` by a flywheel, which Euler bears. Where
+    nothing holds the crank, Runge-Kutta of fourth order keeps the energy, in steps short enough for the fastest turn.
     drawn: with geoms, which are pictures only and cost a fifth of a step.
     Raises AssemblyError if the linkage does not close, InputError if MuJoCo refuses it.
     """
     require_assembly(design)
-    cadence = design.linkage.cadence if cadence is None else cadence
+    cadence, held = design.linkage.cadence if cadence is None else cadence, driven and held
     spec = mujoco.MjSpec()
     spec.modelname = design.name
     spec.comment = f"{design.name}: {design.linkage.architecture.title}, {cadence / RPM:.2f} rpm"
     # as authored and at full precision: the default output has six digits, half a micrometre of loop error
     spec.compiler.savecompiled = spec.compiler.savecanonical = False
     spec.compiler.degree = False
-    set_options(spec, 2 * math.pi / cadence / steps_per_turn(design, cadence, timestep), gravity, integrator)
+    loose = not held and timestep is None
+    steps = loose_steps(design, cadence, legs, gravity) if loose else steps_per_turn(design, cadence, timestep)
+    integrator = "rk4" if not held else "euler" if compatible else "discrete"
+    set_options(spec, 2 * math.pi / cadence / steps, gravity, integrator)
     _set_defaults(spec, loop_solref or LOOP_SOLREF)
     # one fixed root: some readers drop all bodies but the first
     root = spec.worldbody.add_body(name="tricycle", childclass="tricycle")
@@ -88,7 +98,8 @@ def build_mjcf(
         appearance.draw(spec, design, LEGS[legs])
     if driven:
         add_motors(spec, LEGS[legs])
-        _hold_cadence(spec, integrator)
+    if held:
+        _hold_cadence(spec, compatible)
     _add_sensors(spec)
     _add_keyframe(spec, state)
     return spec
@@ -230,9 +241,9 @@ def add_motors(spec: Spec, legs: tuple[Leg, ...]) -> None:
             spec.add_actuator(name=joint, trntype=mujoco.mjtTrn.mjTRN_JOINT, target=joint).set_to_motor()
 
 
-def _hold_cadence(spec: Spec, integrator: str) -> None:
+def _hold_cadence(spec: Spec, compatible: bool) -> None:
     """A velocity servo on the crank, or a flywheel where the integrator does not bear one."""
-    if integrator == "discrete":
+    if not compatible:
         servo = spec.add_actuator(name=SERVO, trntype=mujoco.mjtTrn.mjTRN_JOINT, target="crank")
         servo.set_to_velocity(kv=SERVO_GAIN)
     else:

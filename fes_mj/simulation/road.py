@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, partial
-from typing import Any
+from typing import Any, Literal
 
 import mujoco
 import numpy as np
@@ -21,7 +21,15 @@ from fes_mj.segments import GRAVITY
 from fes_mj.simulation.appearance import Spec
 from fes_mj.simulation.bench import joint_drives
 from fes_mj.simulation.compiled import compiled_controlled_loop
-from fes_mj.simulation.mjcf import LOOP_SOLIMP, LOOP_SOLREF, NO_MINUS, add_motors, build_mjcf, joint_motion
+from fes_mj.simulation.mjcf import (
+    INTEGRATORS,
+    LOOP_SOLIMP,
+    LOOP_SOLREF,
+    NO_MINUS,
+    add_motors,
+    build_mjcf,
+    joint_motion,
+)
 from fes_mj.simulation.sensors import Sensors
 from fes_mj.simulation.stepping import PRE_ROLL, Loop, Run, controlled_loop, drive_addresses, run_loop
 from fes_mj.torque_velocity import AT_ANY_SPEED, hill_factor
@@ -37,16 +45,26 @@ _FAR = 1e6  # rad, an upper limit that is never reached: MuJoCo has no one-sided
 
 
 def build_road_mjcf(
-    ride: Ride, timestep: float = TIMESTEP, drawn: bool = True, driven: bool = True, **options: Any
+    ride: Ride,
+    timestep: float = TIMESTEP,
+    *,
+    integrator: str = "discrete",
+    drawn: bool = True,
+    driven: bool = True,
+    compatible: bool = False,
+    anchors: Literal["sites", "bodies"] = "sites",
 ) -> Spec:
     """The model of build_mjcf with both legs (same options), set on the road at the ride's start.
+
+    integrator: one of mjcf.INTEGRATORS; the scheme of ride_on_road is made for `discrete`. compatible: without what MJX
+    does not know, the sensor of the freewheel.
 
     The tricycle gets its mass and the slide joint `road`; rims are its armature, rolling resistance its friction, air
     its damping. The slope tilts gravity. The tendon `drivetrain` is road less crank: a fixed gear holds its length; a
     freewheel only keeps it from becoming shorter, and whoever steps the model raises that limit to the length reached.
     """
-    spec = build_mjcf(ride.design, legs=len(TWO_LEGS), drawn=drawn, driven=False, **options)
-    spec.option.timestep = timestep
+    spec = build_mjcf(ride.design, timestep=timestep, legs=len(TWO_LEGS), drawn=drawn, driven=False, anchors=anchors)
+    spec.option.timestep, spec.option.integrator = timestep, INTEGRATORS[integrator]
     spec.comment = f"{ride.name}: both legs on a tricycle that rides"
     spec.option.gravity = (GRAVITY * math.sin(ride.road.angle), 0.0, -GRAVITY * math.cos(ride.road.angle))
     load = ride.load
@@ -60,7 +78,7 @@ def build_road_mjcf(
     _add_drivetrain(spec, ride)
     if driven:
         add_motors(spec, TWO_LEGS)
-    _add_sensors(spec, ride, driven, compatible=options.get("integrator") == "euler")
+    _add_sensors(spec, ride, driven, compatible)
     _replace_keyframe(spec, ride)
     return spec
 
@@ -70,8 +88,8 @@ def _add_drivetrain(spec: Spec, ride: Ride) -> None:
     tendon.wrap_joint(ROAD, 1 / ride.travel)
     tendon.wrap_joint("crank", -1.0)
     if ride.fixed:
-        gear = spec.add_equality(name=DRIVETRAIN, type=mujoco.mjtEq.mjEQ_TENDON, objtype=mujoco.mjtObj.mjOBJ_TENDON)
-        gear.name1, gear.data[0] = DRIVETRAIN, -ride.start
+        gear = spec.add_equality(name=DRIVETRAIN, type=mujoco.mjtEq.mjEQ_TENDON)
+        gear.name1, gear.data[0] = DRIVETRAIN, NO_MINUS - ride.start
         gear.solref, gear.solimp = LOOP_SOLREF, LOOP_SOLIMP
     else:
         tendon.limited, tendon.range, tendon.margin = (
@@ -90,7 +108,7 @@ def _add_sensors(spec: Spec, ride: Ride, driven: bool, compatible: bool) -> None
         spec.add_sensor(
             name=f"{joint}_moment", type=kinds.mjSENS_ACTUATORFRC, objtype=objects.mjOBJ_ACTUATOR, objname=joint
         )
-    if not ride.fixed and not compatible:  # MJX knows no such sensor
+    if not ride.fixed and not compatible:
         spec.add_sensor(
             name=DRIVETRAIN, type=kinds.mjSENS_TENDONLIMITFRC, objtype=objects.mjOBJ_TENDON, objname=DRIVETRAIN
         )

@@ -118,14 +118,14 @@ def run_loop(model: mujoco.MjModel, loop: Loop, steps: int, pre_roll: int = PRE_
     mujoco.set_mju_user_warning(lambda _: None)  # MuJoCo would write MUJOCO_LOG.TXT into the user's folder
     try:
         before, _ = loop(model, data, pre_roll)
-        start = _energy(model, data)
+        start = energy(model, data)
         sensors, fields = loop(model, data, steps)
         if any(warning.number for warning in data.warning):
             raise UnstableError(
                 f"{model.names[: model.names.index(0)].decode()}: the simulation became unstable "
                 f"with a time step of {1e3 * model.opt.timestep:.3g} ms; give a smaller --timestep"
             )
-        end = _energy(model, data)
+        end = energy(model, data)
         mujoco.mj_forward(model, data)
     finally:
         mujoco.set_mju_user_warning(previous)
@@ -133,7 +133,7 @@ def run_loop(model: mujoco.MjModel, loop: Loop, steps: int, pre_roll: int = PRE_
     return Run(np.vstack([before[-2:-1], sensors]), start, end, fields)
 
 
-def _energy(model: mujoco.MjModel, data: mujoco.MjData) -> tuple[float, float]:
+def energy(model: mujoco.MjModel, data: mujoco.MjData) -> tuple[float, float]:
     """Potential and kinetic energy of the current state, J; the state itself is left alone."""
     probe = mujoco.MjData(model)
     probe.qpos, probe.qvel = data.qpos, data.qvel

@@ -33,7 +33,7 @@ def report_html(
             worst[each.name] = each
     return page(
         Path(__file__).with_name("report.html.j2"),
-        filters={"short": short, "fixed": fixed},
+        filters={"short": short, "fixed": fixed, "sentence": sentence},
         ok=all(each.ok for each in checks) and all(each.caught for each in detections),
         checks=checks,
         failed=[each for each in checks if not each.ok],
@@ -59,3 +59,8 @@ def short(value: float, unit: str = "") -> str:
 def fixed(value: float, digits: int) -> str:
     """A number with so many decimals, if there is one."""
     return "not refined" if math.isnan(value) else f"{value:.{digits}f}"
+
+
+def sentence(text: str) -> str:
+    """With a capital at its begin; units and names stay as they are."""
+    return text[:1].upper() + text[1:]

@@ -14,10 +14,13 @@ from fes_mj.arrays import FloatArray
 from fes_mj.crosscheck import Case
 from fes_mj.design import BODIES, Design
 from fes_mj.kinematics import FULL_TURN, positions, solve
-from fes_mj.segments import foot_points
-from fes_mj.style import COLOURS, CRANK_LABEL, LINKS, X_LABEL
+from fes_mj.style import COLOURS, CRANK_LABEL, INK, LINKS, STYLE, X_LABEL, literal
+from fes_mj.viewing.bars import bars
 
 PLOTTED = 720  # points of a curve at most
+# Of pages: text stays readable at the width of a phone
+PAGE_WIDTH, PAGE_HEIGHT = 6.4, 3.6  # inches
+READABLE: dict[Any, Any] = STYLE | {"font.size": 12, "legend.fontsize": 11}
 
 
 @contextmanager
@@ -37,11 +40,26 @@ def svg_text(figure: Figure) -> str:
     return text[text.index("<svg") :]
 
 
-def turn_axis(axes: Axes, title: str = "") -> None:
+def page_axes(title: str = "", rows: Sequence[int] = (1,)) -> tuple[Figure, list[Axes]]:
+    """Plots of a page below each other, of relative heights `rows`, as wide as a phone shows them; under READABLE."""
+    figure = Figure(figsize=(PAGE_WIDTH, PAGE_HEIGHT * sum(rows) / rows[0]), layout="constrained")
+    axes = list(figure.subplots(len(rows), squeeze=False, sharex=True, height_ratios=rows)[:, 0])
+    axes[0].set_title(literal(title), loc="left", fontsize=12)
+    return figure, axes
+
+
+def page_svg(figure: Figure, axes: Axes) -> str:
+    """The plot with its legend above, where it hides no curve."""
+    handles, labels = axes.get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside upper center", ncols=3 if sum(map(len, labels)) < 50 else 2)
+    return svg_text(figure)
+
+
+def turn_axis(axes: Axes) -> None:
     """Crank angle over a whole turn against crank power, and a line at zero."""
     axes.set(xlim=(0, 360), xticks=range(0, 361, 60), xlabel=CRANK_LABEL, ylabel="crank power, W")
     axes.axhline(0, color="black", lw=0.8)
-    axes.set_title(title, loc="left")
+    axes.label_outer()
 
 
 def over_turn(crank_angle: FloatArray, *curves: FloatArray, points: int = PLOTTED) -> list[FloatArray]:
@@ -71,30 +89,34 @@ def plot_power(axes: Axes, case: Case, names: Sequence[str] = ("reference", "muj
     turn_axis(axes)
 
 
+def plot_residual(axes: Axes, case: Case) -> None:
+    """What MuJoCo's crank power misses of the exact inverse dynamics over a case's first turn."""
+    run = case.simulation
+    turn = slice(len(run.crank_angle) // run.turns)
+    missed = 1e3 * (run.power - case.reference_power())[turn]
+    axes.plot(*over_turn(run.crank_angle[turn], missed), color=COLOURS["mujoco"])
+    turn_axis(axes)
+    axes.set_ylabel("MuJoCo less\nexact, mW")
+
+
 def draw_linkage(axes: Axes, design: Design, crank_angle: float, paths: Sequence[str] = ("pedal", "knee")) -> None:
-    """Leg and linkage to scale at a crank angle (rad), and the paths of joints over the turn; riders face right."""
+    """Rider, linkage and frame to scale at a crank angle (rad), and the paths of joints; riders face right."""
     turn = positions(design, np.append(FULL_TURN, 2 * np.pi))
-    for name in (name for name in paths if name in turn):
-        axes.plot(turn[name].real, turn[name].imag, color="0.65", lw=0.8, ls=(0, (4, 2)))
     pose = solve(design, np.array([crank_angle]))
     at = {name: complex(np.ravel(jet.value)[0]) for name, jet in pose.points.items()}
-    ankle, heel, toe = (at["knee"] + point * complex(pose.direction("shank")[0]) for point in foot_points(design))
-    axes.plot(*_xy(heel, toe), color="0.3", lw=3, solid_capstyle="round", zorder=1)
-    linkage = design.linkage
-    for body in linkage.architecture.bodies:
-        origin, tip = (at[name] for name in BODIES[body])
-        ends = (origin, ankle, tip) if body == "shank" else (origin, tip)
-        axes.plot(*_xy(*ends), color=LINKS[body], lw=4, solid_capstyle="round", label=body, zorder=2)
-    if linkage.architecture.pedal_body == "coupler":
-        axes.fill(*_xy(at["rocker_joint"], at["pedal"], at["crank_pin"]), color=LINKS["coupler"], alpha=0.35, lw=0)
-    elif linkage.architecture.pedal_body == "rocker":
-        axes.plot(*_xy(at["rocker_joint"], at["pedal"]), color=LINKS["rocker"], lw=4, zorder=2)
+    for bar in bars(design):
+        if abs(bar.end - bar.start) > 0:  # a TRT's frame ends at the crank
+            origin, direction = (
+                (at[BODIES[bar.body][0]], complex(pose.direction(bar.body)[0])) if bar.body else (0j, 1.0)
+            )
+            outline = bar.outline(origin, direction)
+            label = bar.body if bar.part in LINKS and bar.body not in axes.get_legend_handles_labels()[1] else None
+            axes.fill(outline.real, outline.imag, color=bar.colour, lw=0, label=label)
+    for name in (name for name in paths if name in turn):
+        axes.plot(turn[name].real, turn[name].imag, color=INK, lw=0.8, ls=(0, (4, 2)))
     for name, point in at.items():
         fixed = name in ("hip", "crank_centre", "rocker_pivot")
-        axes.plot(point.real, point.imag, "ks" if fixed else "ko", ms=6 if fixed else 4, zorder=3)
+        look: dict[str, Any] = {"color": COLOURS.get(name, INK), "mec": "white", "mew": 0.5}
+        axes.plot(point.real, point.imag, "s" if fixed else "o", ms=6 if fixed else 5, zorder=3, **look)
     axes.set(xlabel=X_LABEL, ylabel="y, m", aspect="equal")
     axes.xaxis.set_inverted(True)
-
-
-def _xy(*points: complex) -> tuple[list[float], list[float]]:
-    return [point.real for point in points], [point.imag for point in points]

@@ -13,14 +13,15 @@ def require_page_packages() -> None:
 
 
 def page(template: Path, filters: Mapping[str, Callable[..., str]] | None = None, **content: Any) -> str:
-    """A page from a Jinja template file; text is escaped, a name that the content lacks is an error.
+    """A page from a Jinja template file, which may extend base.html.j2.
 
-    filters: name in the template -> function to text. Raises MissingPartError as require_page_packages.
+    Text is escaped, a name that the content lacks is an error. filters: name in the template -> function to text.
+    Raises MissingPartError as require_page_packages.
     """
     require_page_packages()
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-    loader = FileSystemLoader(template.parent)
+    loader = FileSystemLoader([template.parent, Path(__file__).parent])
     environment = Environment(
         loader=loader, autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )

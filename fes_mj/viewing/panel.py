@@ -1,6 +1,7 @@
 """The right half of a video: curves that are drawn once, and a copy of them with a cursor for each frame."""
 
 from collections.abc import Callable
+from typing import Any
 
 import matplotlib as mpl
 import numpy as np
@@ -10,10 +11,12 @@ from matplotlib.figure import Figure
 from PIL import Image, ImageDraw
 
 from fes_mj.arrays import Picture
-from fes_mj.style import INK, STYLE
+from fes_mj.design import Design
+from fes_mj.style import BAD, FAINT, GOOD, INK, STYLE, literal
 from fes_mj.viewing.charts import any_letters
 
 _DPI = 100
+_LEFT, _RIGHT = 0.05, 0.97  # of the width, where lines of text begin and end
 
 
 class Panel:
@@ -42,3 +45,21 @@ class Panel:
     def _pixel(self, axes: Axes, x: float, y: float) -> tuple[float, float]:
         across, up = axes.transData.transform((x, y))
         return float(across), self._height - float(up)
+
+
+def write_title(figure: Figure, design: Design, below: str) -> None:
+    """At the top: the design's name and kind, and what is said of the run."""
+    _fit(figure, 0.955, f"{design.name.upper()}: {design.linkage.architecture.title}", size=13, weight="bold")
+    _fit(figure, 0.925, below, size=11, color=FAINT)
+
+
+def write_verdict(figure: Figure, text: str, good: bool) -> None:
+    """At the bottom, green or red."""
+    _fit(figure, 0.02, text, size=12, weight="bold", color=GOOD if good else BAD)
+
+
+def _fit(figure: Figure, y: float, text: str, size: float, **look: Any) -> None:
+    """A line of text of this size, or of the largest with which it fits into the width."""
+    line = figure.text(_LEFT, y, literal(text), size=size, **look)
+    width = line.get_window_extent().width / figure.bbox.width
+    line.set_fontsize(size * min(1.0, (_RIGHT - _LEFT) / width))

@@ -1,48 +1,62 @@
 """The video of a cross-check: the moving legs and linkage beside the crank power over the turn."""
 
+import subprocess
 from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import Any
+from tempfile import TemporaryDirectory
 
-import mujoco
 import numpy as np
 
-from fes_mj import kinematics
-from fes_mj.arrays import FloatArray, IntArray, Picture
+from fes_mj.arrays import IntArray, Picture
 from fes_mj.console import progress_bar
 from fes_mj.crosscheck import Case
-from fes_mj.design import BODIES, Design
 from fes_mj.errors import InputError, MissingPartError, require_extra
 from fes_mj.files import replacing
-from fes_mj.geometry import bounding_box
-from fes_mj.simulation.appearance import Spec
 from fes_mj.simulation.bench import Simulation
 from fes_mj.simulation.mjcf import build_mjcf
-from fes_mj.style import FAINT, INK
 from fes_mj.viewing.headless import use_offscreen_gl
+from fes_mj.viewing.stage import SIDE, stage
 
-HEIGHT, SCENE_WIDTH, PLOT_WIDTH = 720, 720, 560  # pixels
+PLOT_WIDTH = 560  # pixels
 FRAMES_PER_SECOND = 30
-FRAMES = 120  # a turn: slow motion of four seconds
-REPEATS = 2  # turns shown
-# Seen from the rider's right, a little from above: the rider faces right, the crank turns clockwise.
-AZIMUTH, ELEVATION, FIELD_OF_VIEW = -97.0, -7.0, 24.0  # deg
-MARGIN = 0.5  # m around the joints, for flesh, seat and names
-LABEL_CLEARANCE, LABEL_SPACING = 0.22, 0.26  # m: of the rows of names from the linkage, of the names in a row
+LOOP = 4.0  # s that a turn takes in slow motion, and that the turns shown take at least
+REPEATS = 2  # of these turns
 
 
-def render_video(case: Case, path: Path, quiet: bool = False) -> None:
-    """Write an H.264 video of one measured turn, shown REPEATS times, to `path`; raises as write_video."""
+def slow_motion(cadence: float) -> float:
+    """Speed of a video, per the true one, in which a turn of the crank (rad/s) takes LOOP."""
+    return 2 * np.pi / (cadence * LOOP)
+
+
+def steps_shown(run: Simulation, speed: float) -> IntArray:
+    """Steps of a run's first turn that are the frames of a video at this speed: of whole turns, for LOOP at least."""
+    turn = 2 * np.pi / (run.cadence * speed)  # s
+    turns = max(1, int(np.ceil(LOOP / turn - 1e-9)))
+    steps, frames = len(run.crank_angle) // run.turns, max(2, round(turns * turn * FRAMES_PER_SECOND))
+    return (np.arange(frames) * turns * steps // frames) % steps
+
+
+def render_video(case: Case, path: Path, speed: float | None = None, quiet: bool = False) -> None:
+    """Write an H.264 video of whole turns, REPEATS times, to `path`; raises as require_video and write_video.
+
+    speed: of the video, 1 is the true one; by default that of slow_motion.
+    """
     require_video()
+    speed = speed or slow_motion(case.cadence)
+    shown = steps_shown(case.simulation, speed)
+    write_video(path, pictures(case, shown, speed), len(shown), quiet, REPEATS)
+
+
+def pictures(case: Case, steps: IntArray, speed: float) -> Iterator[Picture]:
+    """The frames at these steps of the first turn, shape (SIDE, SIDE + PLOT_WIDTH, 3)."""
     from fes_mj.viewing.power_panel import PowerPanel
 
-    run = case.simulation
-    shown = np.linspace(0, len(run.crank_angle) // run.turns, FRAMES, endpoint=False).astype(int)
-    panel = PowerPanel(case, PLOT_WIDTH, HEIGHT)
-    pictures = (
-        np.hstack([scene, panel.frame(int(step))]) for step, scene in zip(shown, scenes(run, shown), strict=True)
-    )
-    write_video(path, pictures, FRAMES, quiet, REPEATS)
+    run, panel = case.simulation, PowerPanel(case, PLOT_WIDTH, SIDE)
+    spec = build_mjcf(run.design, cadence=run.cadence, timestep=run.timestep, legs=len(run.legs))
+    with stage(spec, run.design, speed, len(run.legs)) as scene:
+        for step in steps:
+            pose = {name: angle[step] for name, angle in run.joint_angle.items()}
+            yield np.hstack([scene.picture(pose), panel.frame(int(step))])
 
 
 def require_video() -> None:
@@ -55,119 +69,31 @@ def require_video() -> None:
         raise MissingPartError("there is no ffmpeg; it comes with: pip install 'fes-mj[video]'") from None
 
 
-def write_video(path: Path, pictures: Iterable[Picture], count: int, quiet: bool = False, repeats: int = 1) -> None:
-    """Write `count` pictures, shape (HEIGHT, SCENE_WIDTH + PLOT_WIDTH, 3), as video. Raises InputError if it cannot."""
-    mediapy = require_extra("video", "mediapy")
-    with progress_bar("rendering, frames", count, quiet) as advance, replacing(path) as beside:
-        frames = []
-        for picture in pictures:
-            frames.append(picture)
-            advance(1)
+def write_video(path: Path, frames: Iterable[Picture], count: int, quiet: bool = False, repeats: int = 1) -> None:
+    """Write `count` frames, shape (SIDE, SIDE + PLOT_WIDTH, 3), so many times over, as video.
+
+    They are encoded while the next is drawn, and once only: the repeats are copies. Raises InputError if it cannot.
+    """
+    mediapy, encoder = (require_extra("video", name) for name in ("mediapy", "imageio_ffmpeg"))
+    shape, look = (SIDE, SIDE + PLOT_WIDTH), {"fps": FRAMES_PER_SECOND, "crf": 20, "ffmpeg_args": "-preset veryfast"}
+    with (
+        progress_bar("rendering, frames", count, quiet) as advance,
+        replacing(path) as beside,
+        TemporaryDirectory() as folder,
+    ):
+        once = Path(folder) / "once.mp4"
         try:
-            shape = (HEIGHT, SCENE_WIDTH + PLOT_WIDTH)
-            with mediapy.VideoWriter(beside, shape, fps=FRAMES_PER_SECOND, crf=20) as writer:
-                for frame in frames * repeats:
+            with mediapy.VideoWriter(once, shape, **look) as writer:
+                for frame in frames:
                     writer.add_image(frame)
-        except (RuntimeError, BrokenPipeError) as error:  # the encoder ended, with words or without
-            reason = str(error).rpartition("] ")[2].strip()
+                    advance(1)
+            copy = ["-v", "error", "-y", "-stream_loop", str(repeats - 1), "-i", str(once), "-c", "copy", str(beside)]
+            subprocess.run([encoder.get_ffmpeg_exe(), *copy], check=True, capture_output=True, text=True)
+        except (
+            RuntimeError,
+            BrokenPipeError,
+            subprocess.CalledProcessError,
+        ) as error:  # it ended, with words or without
+            said = error.stderr if isinstance(error, subprocess.CalledProcessError) else str(error)
+            reason = said.strip().rpartition("] ")[2].strip()
             raise InputError(f"{path}: cannot be written: the encoder stopped: {reason}") from None
-
-
-def set_stage(spec: Spec) -> None:
-    """Light, sky and picture size of a video."""
-    spec.visual.global_.offwidth, spec.visual.global_.offheight = SCENE_WIDTH, HEIGHT
-    spec.visual.global_.fovy = FIELD_OF_VIEW
-    spec.visual.headlight.ambient, spec.visual.headlight.diffuse = [0.55] * 3, [0.5] * 3
-    sky = spec.add_texture(name="sky", type=mujoco.mjtTexture.mjTEXTURE_SKYBOX, width=64, height=64)
-    sky.builtin, sky.rgb1, sky.rgb2 = mujoco.mjtBuiltin.mjBUILTIN_GRADIENT, [1, 1, 1], [0.86, 0.89, 0.93]
-
-
-def scenes(run: Simulation, steps: IntArray) -> Iterator[Picture]:
-    """Labelled pictures of the simulated model at the given steps, shape (HEIGHT, SCENE_WIDTH, 3)."""
-    spec = build_mjcf(run.design, cadence=run.cadence, timestep=run.timestep, legs=len(run.legs))
-    set_stage(spec)
-    model = spec.compile()
-    data, camera, labels = mujoco.MjData(model), turn_camera(run.design), _Labels(run)
-    addresses = {name: model.joint(name).qposadr[0] for name in run.joint_angle}
-    with mujoco.Renderer(model, HEIGHT, SCENE_WIDTH) as renderer:
-        for step in steps:
-            for name, address in addresses.items():
-                data.qpos[address] = run.joint_angle[name][step]
-            place(model, data)
-            renderer.update_scene(data, camera)
-            yield labels.draw(renderer.render(), data, renderer.scene.camera)
-
-
-def place(model: mujoco.MjModel, data: mujoco.MjData) -> None:
-    """Put everything that is drawn where the joint positions have it."""
-    mujoco.mj_kinematics(model, data)
-    mujoco.mj_comPos(model, data)
-    mujoco.mj_camlight(model, data)
-
-
-def turn_camera(design: Design) -> mujoco.MjvCamera:
-    """A fixed camera that sees every joint over the whole turn, with room for the names."""
-    low, high = bounding_box(kinematics.positions(design, kinematics.FULL_TURN))
-    centre, size = (low + high) / 2, max((high - low).real, (high - low).imag) + MARGIN
-    camera = mujoco.MjvCamera()
-    camera.lookat = (centre.real, 0.0, centre.imag)
-    camera.distance = size / 2 / np.tan(np.radians(FIELD_OF_VIEW / 2))
-    camera.azimuth, camera.elevation = AZIMUTH, ELEVATION
-    return camera
-
-
-class _Labels:
-    """Names in fixed places above and below the linkage, each with a line to its moving part."""
-
-    def __init__(self, run: Simulation) -> None:
-        from matplotlib import font_manager
-        from PIL import ImageFont
-
-        self._font = ImageFont.truetype(font_manager.findfont("DejaVu Sans"), 20)
-        self._prefix = run.legs[0].prefix
-        points = kinematics.positions(run.design, kinematics.FULL_TURN)
-
-        def home(part: str) -> complex:
-            """Mean position of a part over the turn, m."""
-            return complex(np.mean([np.mean(points[end]) for end in BODIES.get(part, (part, part))]))
-
-        low, high = bounding_box(points)
-        rows = {
-            high.imag + LABEL_CLEARANCE: ("thigh", "shank"),
-            low.imag - LABEL_CLEARANCE: (*run.design.linkage.architecture.bodies[2:], "pedal"),
-        }
-        self._spots = {}  # m, as points of the scene: in the order of the parts, so that few lines cross
-        for height, parts in rows.items():
-            middle = np.mean([home(part).real for part in parts])
-            for place, part in enumerate(sorted(parts, key=lambda part: home(part).real)):
-                across = middle + (place - (len(parts) - 1) / 2) * LABEL_SPACING
-                self._spots[part] = np.array([across, 0.0, height])
-
-    def _targets(self, data: mujoco.MjData) -> dict[str, FloatArray]:
-        """Where each name points, m: a body's centre of mass, or the pedal."""
-        bodies = {body: body if body == "crank" else self._prefix + body for body in self._spots if body != "pedal"}
-        return {
-            "pedal": data.site(f"{self._prefix}shank_pedal").xpos,
-            **{body: data.body(name).xipos for body, name in bodies.items()},
-        }
-
-    def draw(self, picture: Picture, data: mujoco.MjData, eyes: Any) -> Picture:
-        """The picture with the names written on it; eyes: the scene's two cameras, between which it was taken."""
-        from PIL import Image, ImageDraw
-
-        image = Image.fromarray(picture)
-        draw = ImageDraw.Draw(image)
-        for name, target in self._targets(data).items():
-            spot, (x, y) = _project(self._spots[name], eyes), _project(target, eyes)
-            draw.line([spot, (x, y)], fill=FAINT, width=2)
-            draw.ellipse([x - 4, y - 4, x + 4, y + 4], fill="white", outline=FAINT, width=2)
-            draw.text(spot, name, font=self._font, fill=INK, anchor="mm", stroke_width=6, stroke_fill="white")
-        return np.asarray(image)
-
-
-def _project(point: FloatArray, eyes: Any) -> tuple[float, float]:
-    """Pixel of a point in a picture taken from between two MjvGLCameras."""
-    forward, up = np.array(eyes[0].forward), np.array(eyes[0].up)
-    offset = point - np.mean([eye.pos for eye in eyes], axis=0)
-    scale = HEIGHT / 2 / np.tan(np.radians(FIELD_OF_VIEW / 2)) / (offset @ forward)
-    return SCENE_WIDTH / 2 + scale * (offset @ np.cross(forward, up)), HEIGHT / 2 - scale * (offset @ up)

@@ -6,9 +6,9 @@ from matplotlib.figure import Figure
 
 from fes_mj.arrays import Picture
 from fes_mj.ride_case import RideCase
-from fes_mj.style import BAD, COLOURS, FAINT, GOOD, literal
+from fes_mj.style import COLOURS
 from fes_mj.units import KMH
-from fes_mj.viewing.panel import Panel
+from fes_mj.viewing.panel import Panel, write_title, write_verdict
 
 _SMOOTH = 0.02  # s over which power is drawn
 
@@ -54,11 +54,9 @@ def _plot(case: RideCase, end: float, speed: Axes, power: Axes) -> None:
 def _write_facts(figure: Figure, case: RideCase) -> None:
     """Title above and the verdict below the curves."""
     ride, trace = case.ride, case.simulation.trace
-    title = f"{ride.design.name.upper()}: {ride.design.linkage.architecture.title}"
-    figure.text(0.05, 0.955, literal(title), size=13, weight="bold")
     road = f"joint moments {ride.moments.name.upper()}, {ride.transmission}, {100 * ride.road.slope:.3g} % slope"
-    figure.text(0.05, 0.925, literal(road), size=11, color=FAINT)
+    write_title(figure, ride.design, road)
     speed = trace.mean_speed
     end = f"rides, {(speed or 0) / KMH:.1f} km/h at the end" if trace.rides else f"stops after {trace.stopped_at:.1f} s"
     verdict = "the two solvers agree" if case.agrees else "the two solvers DO NOT agree"
-    figure.text(0.14, 0.025, f"{end}; {verdict}", size=12, weight="bold", color=GOOD if case.agrees else BAD)
+    write_verdict(figure, f"{end}; {verdict}", case.agrees)

@@ -11,64 +11,43 @@ from fes_mj.arrays import IntArray, Picture
 from fes_mj.ride_case import RideCase
 from fes_mj.simulation.appearance import Spec, lowest_point
 from fes_mj.simulation.road import RoadRun, build_road_mjcf
-from fes_mj.viewing.render import (
-    FRAMES_PER_SECOND,
-    HEIGHT,
-    PLOT_WIDTH,
-    SCENE_WIDTH,
-    place,
-    require_video,
-    set_stage,
-    turn_camera,
-    write_video,
-)
+from fes_mj.viewing.render import FRAMES_PER_SECOND, PLOT_WIDTH, require_video, write_video
+from fes_mj.viewing.stage import SIDE, stage
 
 LONGEST = 12.0  # s that are shown, in real time, from the start
 AFTER_STOP = 1.0  # s that are shown of a tricycle that has stopped
+_DISTANCE = 1.3  # of the camera, per that of a bench: room for the road
 _TILE = 0.5  # m of a light and a dark tile of the road each
 
 
 def render_ride(case: RideCase, path: Path, quiet: bool = False) -> None:
     """Write an H.264 video of the begin of a ride to `path`; raises as render.require_video and write_video."""
     require_video()
-    from fes_mj.viewing.ride_panel import RidePanel
-
     run = case.simulation
     trace = run.trace
     end = min(LONGEST, float(trace.time[-1]), (trace.stopped_at or math.inf) + AFTER_STOP)
     shown = (np.arange(0, end, 1 / FRAMES_PER_SECOND) / run.timestep).astype(int)
-    panel = RidePanel(case, end, PLOT_WIDTH, HEIGHT)
-    pictures = (
-        np.hstack([scene, panel.frame(int(step))]) for step, scene in zip(shown, _scenes(run, shown), strict=True)
-    )
-    write_video(path, pictures, len(shown), quiet)
+    write_video(path, _pictures(case, shown, end), len(shown), quiet)
 
 
-def _scenes(run: RoadRun, steps: IntArray) -> Iterator[Picture]:
-    """Pictures of the tricycle on its road at the given steps, shape (HEIGHT, SCENE_WIDTH, 3)."""
+def _pictures(case: RideCase, steps: IntArray, end: float) -> Iterator[Picture]:
+    """The frames at these steps of a ride that is shown until `end`, s; in true time."""
+    from fes_mj.viewing.ride_panel import RidePanel
+
+    run, panel = case.simulation, RidePanel(case, end, PLOT_WIDTH, SIDE)
     spec = build_road_mjcf(run.ride, run.timestep)
-    set_stage(spec)
     _add_road(spec, run)
-    model = spec.compile()
-    data, camera = mujoco.MjData(model), turn_camera(run.ride.design)
-    camera.distance *= 1.3  # room for the road
-    trace, middle = run.trace, np.array(camera.lookat)
-    joints = {name: model.joint(name).qposadr[0] for name in run.sensors.joints}
-    with mujoco.Renderer(model, HEIGHT, SCENE_WIDTH) as renderer:
+    with stage(spec, run.ride.design, speed=1.0, legs=2, road=_DISTANCE) as scene:
         for step in steps:
-            for name, address in joints.items():
-                data.qpos[address] = run.sensors[f"{name}_angle"][step]
-            place(model, data)
-            camera.lookat = middle - (trace.distance[step], 0.0, 0.0)
-            renderer.update_scene(data, camera)
-            yield renderer.render()
+            pose = {name: run.sensors[f"{name}_angle"][step] for name in run.sensors.joints}
+            yield np.hstack([scene.picture(pose, run.trace.distance[step]), panel.frame(int(step))])
 
 
 def _add_road(spec: Spec, run: RoadRun) -> None:
     """A plane in tiles, so that one sees it pass."""
     tiles = spec.add_texture(name="tiles", type=mujoco.mjtTexture.mjTEXTURE_2D, width=64, height=64)
     tiles.builtin, tiles.rgb1, tiles.rgb2 = mujoco.mjtBuiltin.mjBUILTIN_CHECKER, [0.80] * 3, [0.70, 0.72, 0.75]
-    material = spec.add_material(name="road", texuniform=True, texrepeat=[1 / (2 * _TILE)] * 2)
+    material = spec.add_material(name="road", texuniform=True, texrepeat=[1 / (2 * _TILE)] * 2, emission=0.4)
     material.textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = "tiles"
     length = float(run.trace.distance.max())
     spec.worldbody.add_geom(

@@ -19,7 +19,7 @@ DESIGN = Path(fes_mj.__file__).parent / "data" / "designs" / "identified" / "d1.
 def test_any_name_in_every_output(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr("fes_mj.viewing.render.FRAMES", 2)
+    monkeypatch.setattr("fes_mj.viewing.render.LOOP", 0.1)
     monkeypatch.chdir(tmp_path)
     design, moments = f"{name}.toml", f"{name}.csv"
     Path(design).write_bytes(DESIGN.read_bytes())

@@ -40,6 +40,9 @@ def test_the_winner_is_what_the_other_commands_see(tmp_path: Path, capsys: pytes
     assert run(["simulate", str(best), "--group", "p1p3", "--timestep", str(found["timestep_s"]), "--json"]) == 0
     simulated = json.loads(capsys.readouterr().out)
     assert simulated["power_mean_W"] == pytest.approx(found["simulated_power_mean_W"], rel=1e-9)
+    swing = simulated["power_peak_to_peak_W"]
+    assert found["power_highest_W"] - found["power_lowest_W"] == pytest.approx(swing, rel=1e-9)
+    assert found["power_peak_to_peak_W"] == pytest.approx(swing, rel=1e-9)
     text = page.read_text(encoding="utf-8")
     assert f"{found['power_mean_W']:.3f}" in text
     assert "<svg" in text
@@ -79,10 +82,15 @@ def test_riders_of_a_population_are_listed_with_their_seats(capsys: pytest.Captu
 def test_a_front_beside_the_design(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     pytest.importorskip("pymoo")
     out = tmp_path / "front.toml"
-    assert run(["optimize", "cdt", "--method", "nsga-ii", "--budget", "4000", "-o", str(out), "--json"]) == 0
+    assert (
+        run(["optimize", "cdt", "--method", "nsga-ii", "--smooth", "--budget", "4000", "-o", str(out), "--json"]) == 0
+    )
     found = json.loads(capsys.readouterr().out)
     lines = (tmp_path / "front-front.csv").read_text().splitlines()
     assert len(lines) == len(found["front"]) + 1
+    assert lines[0].endswith(",fluctuation")
+    written = [float(line.split(",")[-1]) for line in lines[1:]]
+    assert written == pytest.approx([point["fluctuation"] for point in found["front"]], rel=1e-8)  # nine digits
     design = fes_mj.load_design(out)
     for group in ("p1p2", "p1p3"):
         power = fes_mj.quasi_static(design, fes_mj.load_moments(group)).power_mean

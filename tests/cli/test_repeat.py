@@ -13,7 +13,7 @@ SCRIPT = """
 import sys
 from fes_mj.cli.app import run
 from fes_mj.viewing import render
-render.FRAMES = 2
+render.LOOP = 0.1
 sys.exit(run(sys.argv[1:]))
 """
 

@@ -1,8 +1,6 @@
-"""The page in a real browser: Debian's Chromium, or what CHROMIUM names, driven by Playwright."""
+"""The page in a real browser."""
 
-import os
 import re
-import shutil
 import threading
 from collections.abc import Iterator
 from pathlib import Path
@@ -18,24 +16,13 @@ from fes_mj.explore.server import Server
 from fes_mj.explore.turn import POINTS
 from fes_mj.statics import quasi_static
 from fes_mj.variables import replaced
+from tests.browser import DESKTOP, NEEDS_BROWSER, PHONE, browser
 from tests.cli.conftest import answer
 
-playwright = pytest.importorskip("playwright.sync_api", reason="Playwright is not installed: pip install playwright")
-CHROMIUM = os.environ.get("CHROMIUM") or shutil.which("chromium") or shutil.which("chromium-browser")
-pytestmark = [
-    pytest.mark.long,
-    pytest.mark.skipif(not CHROMIUM, reason="there is no Chromium: apt-get install chromium, or name one by CHROMIUM"),
-]
-DESKTOP, PHONE = (1400, 900), (390, 844)
+__all__ = ["browser"]  # the fixture
+
+pytestmark = NEEDS_BROWSER
 PATIENCE = 60_000  # ms
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
-    with playwright.sync_playwright() as driver:
-        browser = driver.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])  # CI runs as root
-        yield browser
-        browser.close()
 
 
 class Page:

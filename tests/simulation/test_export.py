@@ -6,7 +6,6 @@ import csv
 import itertools
 import math
 from pathlib import Path
-from typing import get_args
 
 import mujoco
 import numpy as np
@@ -15,16 +14,15 @@ from numpy.typing import NDArray
 
 from fes_mj import load_design, load_moments
 from fes_mj.checks import definitions
-from fes_mj.cli.export import _Variant
 from fes_mj.design_file import DESIGNS
-from fes_mj.errors import InputError
 from fes_mj.geometry import FROM_TOP
 from fes_mj.joints import JOINTS
 from fes_mj.simulation.bench import joint_drives, simulate
-from fes_mj.simulation.export import VARIANTS, mjcf_text, scene_text, sidecar_text, variant_model, variant_options
+from fes_mj.simulation.export import mjcf_text, scene_text, sidecar_text
 from fes_mj.simulation.mjcf import build_mjcf
 from fes_mj.simulation.sensors import Sensors
 from fes_mj.simulation.stepping import PRE_ROLL, drive_addresses
+from fes_mj.simulation.variants import variant_model, variant_options
 from fes_mj.statics import quasi_static
 from fes_mj.time_step import steps_per_turn
 from fes_mj.torque_map import torque_map
@@ -33,6 +31,10 @@ COMBINATIONS = [
     combination
     for count in range(4)
     for combination in itertools.combinations(["bodies", "passive", "two-legs", "compatible"], count)
+] + [
+    (*crank, *others)
+    for crank in [("free",), ("brake",), ("ride",), ("ride", "fixed-gear")]
+    for others in [(), ("bodies", "passive"), ("two-legs", "compatible"), ("bodies", "passive", "compatible")]
 ]
 
 
@@ -46,12 +48,11 @@ def compiled_bytes(model: mujoco.MjModel) -> NDArray[np.uint8]:
 @pytest.mark.parametrize("name", DESIGNS)
 @pytest.mark.parametrize("variants", COMBINATIONS, ids="+".join)
 def test_reloads_bit_for_bit(name: str, variants: tuple[str, ...]) -> None:
-    design = load_design(name)
-    for cadence in (None, 2 * math.pi):
-        options = variant_options(variants) | {"cadence": cadence}
-        written = build_mjcf(design, **options).compile()
-        reloaded = mujoco.MjModel.from_xml_string(mjcf_text(build_mjcf(design, **options)))
-        assert np.array_equal(compiled_bytes(written), compiled_bytes(reloaded))
+    design, moments, options = load_design(name), load_moments(), variant_options(variants)
+    for cadence in (design.linkage.cadence, 2 * math.pi):
+        spec = variant_model(design, moments, cadence, options)
+        written = spec.compile()
+        assert np.array_equal(compiled_bytes(written), compiled_bytes(mujoco.MjModel.from_xml_string(mjcf_text(spec))))
 
 
 @pytest.mark.parametrize("others", [(), ("bodies",), ("compatible",)], ids="+".join)
@@ -75,43 +76,11 @@ def test_the_ride_rolls_out_in_a_plain_loop(name: str, others: tuple[str, ...]) 
     assert largest < 1e-4
 
 
-def test_the_variants_differ_in_what_they_say() -> None:
-    design = load_design("d1")
-    moments, cadence = load_moments(), design.linkage.cadence
-    models = {name: variant_model(design, moments, cadence, variant_options([name])).compile() for name in VARIANTS}
-    assert {name: model.nu for name, model in models.items()} == {
-        "sites": 3,
-        "bodies": 3,
-        "passive": 0,
-        "two-legs": 5,
-        "compatible": 2,
-        "ride": 4,
-    }
-    site, body = mujoco.mjtObj.mjOBJ_SITE, mujoco.mjtObj.mjOBJ_BODY
-    assert {name for name, model in models.items() if (model.eq_objtype == body).all()} == {"bodies"}
-    assert all((model.eq_objtype == site).all() for name, model in models.items() if name != "bodies")
-    assert {name: model.nv for name, model in models.items()} == dict.fromkeys(VARIANTS, 5) | {
-        "two-legs": 9,
-        "ride": 10,
-    }
-    assert models["compatible"].opt.integrator == mujoco.mjtIntegrator.mjINT_EULER
-    assert models["compatible"].joint("crank").armature == 1e6
-    assert variant_options(["two-legs", "passive"]) == {"legs": 2, "driven": False}
-    assert get_args(_Variant) == tuple(VARIANTS)
-
-
-def test_contrary_and_unknown_variants_are_refused() -> None:
-    with pytest.raises(InputError, match="sites and bodies exclude each other"):
-        variant_options(["sites", "bodies"])
-    with pytest.raises(InputError, match="'mjx'; it must be one of sites, bodies"):
-        variant_options(["mjx"])
-
-
 @pytest.mark.parametrize("name", DESIGNS)
 def test_the_compatible_variant_gives_the_power_of_statics(name: str) -> None:
     """Euler and a flywheel in the place of `discrete` and a servo: same limits as the cross-check."""
     design, moments = load_design(name), load_moments()
-    model = build_mjcf(design, integrator="euler").compile()
+    model = build_mjcf(design, compatible=True).compile()
     data, recorded = mujoco.MjData(model), []
     mujoco.mj_resetDataKeyframe(model, data, 0)
     drives = [(*drive_addresses(model, joint), torque_map(moments).feedback(joint)) for joint in JOINTS]
@@ -131,11 +100,35 @@ def test_the_compatible_variant_gives_the_power_of_statics(name: str) -> None:
     assert np.linalg.norm(gaps, axis=2).max() < definitions()["loop_gap"].limit
 
 
+# What a comment says -> a combination it belongs to, and one it does not.
+COMMENTS = {
+    "bears the stiff servo": ((), ("free",)),
+    "Runge-Kutta": (("free",), ("compatible",)),
+    "one evaluation": (("brake",), ("free",)),
+    "holds the cadence where": (("compatible",), ("brake", "compatible")),
+    "the brake takes": (("brake",), ("ride",)),
+    "Metres ridden": (("ride",), ("two-legs",)),
+    "Road less crank": (("ride",), ("ride", "fixed-gear")),
+    "Holds the cadence (rad/s)": ((), ("compatible",)),
+    "Net joint moments": (("free",), ("passive",)),
+}
+
+
+@pytest.mark.parametrize("said", COMMENTS)
+def test_a_comment_stands_where_it_belongs(said: str) -> None:
+    design, moments = load_design("d1"), load_moments()
+    texts = [
+        mjcf_text(variant_model(design, moments, design.linkage.cadence, variant_options(variants)))
+        for variants in COMMENTS[said]
+    ]
+    assert [text.count(said) for text in texts] == [1, 0]
+
+
 @pytest.mark.parametrize("name", DESIGNS)
 def test_every_comment_stands_in_the_file_and_no_number_is_shortened(name: str) -> None:
     text = mjcf_text(build_mjcf(load_design(name)))
-    assert text.count("<!--") == 11  # the heading and all but the flywheel's
-    assert mjcf_text(build_mjcf(load_design(name), integrator="euler")).count("<!--") == 10  # no discrete, no servo
+    assert text.count("<!--") == 11  # the heading and what a model with a servo has
+    assert mjcf_text(build_mjcf(load_design(name), compatible=True)).count("<!--") == 10  # no discrete, no servo
     assert f'timestep="{float(build_mjcf(load_design(name)).option.timestep)!r}"' in text
 
 

@@ -11,63 +11,97 @@ import pytest
 
 from fes_mj import load_design
 from fes_mj.design_file import DESIGNS
-from tools.conformance import READERS, RESULTS, Row, interpreter, jobs, judge, reference, rows
+from tools.conformance import MOTIONS, RESULTS, Row, interpreter, jobs, judge, reference, rows
+from tools.known_readers import READERS
+
+Asked = tuple[dict[Any, Any], dict[Any, Any]]  # jobs, MuJoCo's answers
 
 
 @pytest.fixture(scope="module")
-def asked(tmp_path_factory: pytest.TempPathFactory) -> tuple[Any, ...]:
-    """Designs, jobs and MuJoCo's answers."""
-    designs = [load_design(name) for name in DESIGNS]
-    tasks = jobs(designs, tmp_path_factory.mktemp("models"))
-    return designs, tasks, reference(designs, tasks)
+def asked(tmp_path_factory: pytest.TempPathFactory) -> Asked:
+    """Of the TRT."""
+    tasks = jobs([load_design("trt")], tmp_path_factory.mktemp("models"))
+    return tasks, reference(tasks)
 
 
-@pytest.mark.parametrize("name", [pytest.param(name, marks=pytest.mark.long) for name in READERS if name != "mujoco"])
-def test_reader_conforms(name: str, asked: tuple[Any, ...]) -> None:
+@pytest.fixture(scope="module")
+def everything(tmp_path_factory: pytest.TempPathFactory) -> Asked:
+    """Of all designs."""
+    tasks = jobs([load_design(name) for name in DESIGNS], tmp_path_factory.mktemp("models"))
+    return tasks, reference(tasks)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", READERS)
+def test_reader_conforms(name: str, everything: Asked) -> None:
     if interpreter(name) is None:
         pytest.skip(f"{name} is not installed; `make readers` installs it")
-    found = rows(name, *asked)
+    found = rows(name, *everything)
     assert [row.design for row in found] == list(DESIGNS)
     assert all(row.ok for row in found), [row for row in found if not row.ok]
 
 
-def test_mujoco_finds_the_same_in_another_process(asked: tuple[Any, ...]) -> None:
-    found = rows("mujoco", *asked)
-    assert all(row.ok and not row.drops and row.default_model == "loads" for row in found)
+def test_mujoco_finds_the_same_in_another_process(asked: Asked) -> None:
+    (row,) = rows("mujoco", *asked)
+    assert row.ok
+    assert not row.drops
+    assert row.default_model == "loads"
+    assert set(row.motions) == set(MOTIONS)
+    assert all(motion.moved == (name != "motors") for name, motion in row.motions.items())
 
 
 @pytest.fixture
-def good(asked: tuple[Any, ...]) -> list[dict[str, Any]]:
-    """MuJoCo's answers on D1, as a reader would give them."""
-    return copy.deepcopy(asked[2][9:12])
+def good(asked: Asked) -> dict[Any, Any]:
+    """MuJoCo's answers, as a reader would give them."""
+    return copy.deepcopy(asked[1])
 
 
-def judged(name: str, answers: list[dict[str, Any]], asked: tuple[Any, ...]) -> Row:
-    return judge(name, "0", "d1", answers, asked[2][9:12])
+def judged(name: str, answers: dict[Any, Any], asked: Asked) -> Row:
+    return judge(name, "0", "trt", answers, *asked)
 
 
-def test_the_judge_accepts_the_reference(good: list[dict[str, Any]], asked: tuple[Any, ...]) -> None:
+def test_the_judge_accepts_the_reference(good: dict[Any, Any], asked: Asked) -> None:
     assert judged("pinocchio", good, asked).ok
     assert not judged("mjx", good, asked).ok  # with dJ/dt v it would no longer be the MJX of the table
-    good[0]["acceleration"] = good[0]["without_velocity_term"]
+    for answer in good.values():
+        if "acceleration" in answer:
+            answer["acceleration"] = answer["without_velocity_term"]
     assert judged("mjx", good, asked).ok
 
 
-def test_the_judge_refuses_every_fault(good: list[dict[str, Any]], asked: tuple[Any, ...]) -> None:
-    for key, value in {"loops": 1, "free": 2, "pedal": [0.0, 0.0]}.items():
+def test_the_judge_refuses_every_fault(good: dict[Any, Any], asked: Asked) -> None:
+    for part, value in {"loops": 2, "free": 2, "pedal": [0.0, 0.0]}.items():
         faulty = copy.deepcopy(good)
-        for answer in faulty[:2]:
-            answer[key] = value
-        assert not judged("pinocchio", faulty, asked).ok, key
-    faulty = copy.deepcopy(good)
-    faulty[0]["acceleration"]["knee"] += 1.0
-    assert not judged("pinocchio", faulty, asked).ok
-    refused = [{"error": "ValueError: no"}] * 3
+        for anchors in ("sites", "bodies"):
+            faulty["trt", anchors, "one leg"][part] = value
+        assert not judged("pinocchio", faulty, asked).ok, part
+    for motion in MOTIONS:
+        faulty = copy.deepcopy(good)
+        joint = next(iter(faulty["trt", "sites", motion]["acceleration"]))
+        faulty["trt", "sites", motion]["acceleration"][joint] += 1.0
+        assert not judged("mujoco", faulty, asked).ok, motion
+    refused = {key: {"error": "ValueError: no"} for key in good}
     row = judged("pinocchio", refused, asked)
     assert not row.ok
     assert row.default_model == "ValueError: no"
-    good[2]["keeps"]["sensors"] = 0
+    good["trt", "sites", "default"]["keeps"]["sensors"] = 0
     assert judged("pinocchio", good, asked).drops == ("sensors",)
+    assert judged("pinocchio", good, asked).ok
+
+
+@pytest.mark.parametrize("motion", ["one leg", "two legs", "ride"])
+def test_the_judge_sees_energy_and_gaps_at_the_horizon(motion: str, good: dict[Any, Any], asked: Asked) -> None:
+    """The last state faster by a tenth, or its angles larger by a thousandth; or no states at all."""
+    assert judged("mujoco", good, asked).ok
+    for part, factor, spoilt in ((1, 1.1, "energy"), (0, 1.001, "gap")):
+        faulty = copy.deepcopy(good)
+        states = faulty["trt", "sites", motion]["states"]
+        states[-1][part] = [factor * value for value in states[-1][part]]
+        found = judged("mujoco", faulty, asked).motions[motion]
+        assert not found.ok, spoilt
+    faulty = copy.deepcopy(good)
+    faulty["trt", "sites", motion]["states"] = []
+    assert not judged("mujoco", faulty, asked).ok
 
 
 def test_the_kept_table_is_complete_and_good() -> None:

@@ -13,7 +13,7 @@ import pytest
 
 from fes_mj import load_design
 from fes_mj.design_file import DESIGNS
-from tools.make_models import HEIGHT, WIDTH, model_files
+from tools.make_models import HEIGHT, SHIPPED, WIDTH, model_files
 
 ROOT = Path(__file__).parents[2]
 NUMBER = re.compile(r"-?\d+\.?\d*(?:e-?\d+)?")
@@ -41,7 +41,9 @@ def test_the_folder_holds_nothing_else() -> None:
     assert found == set(DESIGNS)
     for name in DESIGNS:
         files = {path.name for path in (ROOT / "mjcf" / name).iterdir()}
-        assert files == {f"{name}.xml", "scene.xml", f"{name}.csv", "README.md", f"{name}.png"}
+        models = {f"{name}.xml", *(f"{name}-{suffix}.xml" for suffix in SHIPPED)}
+        assert files == {*models, "scene.xml", f"{name}.csv", "README.md", f"{name}.png"}
+        assert sum((ROOT / "mjcf" / name / file).stat().st_size for file in models) < 100_000
 
 
 def test_the_scene_loads_from_anywhere() -> None:
@@ -60,6 +62,12 @@ def lint(folder: Path) -> str:
 
 def test_the_linter_finds_nothing() -> None:
     assert "5 model(s) loaded, 0 failed  ·  0 errors  0 warnings" in lint(ROOT / "mjcf")
+
+
+@pytest.mark.parametrize("suffix", SHIPPED)
+def test_the_linter_finds_nothing_in_the_variants(suffix: str) -> None:
+    for name in ("trt", "d1"):
+        assert f"{name}-{suffix}.xml  — clean" in lint(ROOT / "mjcf" / name / f"{name}-{suffix}.xml")
 
 
 def test_the_linter_finds_an_inertia_in_wrong_units(tmp_path: Path) -> None:

@@ -2,6 +2,8 @@
 
 import re
 from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import pytest
@@ -9,6 +11,9 @@ import pytest
 from fes_mj.checks import definitions
 from fes_mj.cli.app import run
 from fes_mj.verification.mistakes import faults
+from tests.browser import NEEDS_BROWSER, browser, check_on_a_phone
+
+__all__ = ["browser"]  # the fixture
 
 
 class _Page(HTMLParser):
@@ -61,6 +66,8 @@ def test_the_report_opens_with_the_verdict_and_shows_everything(report: dict[str
     assert "data:video/mp4;base64,bm90IGEgcmVhbCB2aWRlbw==" in report["html"]
     assert all(name in text for name in definitions())
     assert "knee moment on the shank" in text
+    assert "(to 10 W at least)" in text  # units keep their capitals
+    assert text.count("exact, mW") == 2  # what the curves that coincide differ by
     assert 'name="viewport"' in report["html"]
 
 
@@ -70,3 +77,13 @@ def test_junit_counts_every_verdict(report: dict[str, str]) -> None:
     for suite in suites:
         assert int(suite.get("tests", -1)) == len(suite.findall("testcase"))
         assert suite.get("failures") == "0"
+
+
+class TestOnAPhone:
+    """Of the report in a browser as wide as a phone."""
+
+    pytestmark = NEEDS_BROWSER
+
+    def test_the_report_fits(self, browser: Any, report: dict[str, str], tmp_path: Path) -> None:
+        (file := tmp_path / "report.html").write_text(report["html"], encoding="utf-8")
+        check_on_a_phone(browser, file)

@@ -37,14 +37,14 @@ def test_the_wheel_serves_where_the_system_has_nothing(tmp_path: Path) -> None:
         pytest.skip("the OSMesa wheel is not installed")
     script = (
         "import sys; from fes_mj.viewing import headless, render; headless._works = lambda _: False; "
-        "render.FRAMES = 2; from fes_mj.cli.app import run; "
+        "render.LOOP = 0.1; from fes_mj.cli.app import run; "
         "sys.exit(run(['simulate', 'd1', '-q', '--render', sys.argv[1]]))"
     )
     path = tmp_path / "out.mp4"
     clean = {key: value for key, value in os.environ.items() if key not in ("MUJOCO_GL", "PYOPENGL_PLATFORM")}
     done = subprocess.run([sys.executable, "-c", script, str(path)], capture_output=True, text=True, env=clean)
     assert (done.returncode, done.stderr) == (0, "")
-    assert len(frames_of(path)[1]) == 4
+    assert len(frames_of(path)[1]) == 6
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="other systems always have a screen")

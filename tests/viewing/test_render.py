@@ -1,4 +1,4 @@
-"""The video: frames that differ, and one message where its packages are missing."""
+"""The video: frames that differ, its speed, and one message where its packages are missing."""
 
 import sys
 from pathlib import Path
@@ -6,14 +6,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import fes_mj
 from fes_mj.cli.app import run
 from tests.viewing.conftest import frames_of
 
 pytest.importorskip("mediapy")
+from fes_mj.viewing import render
 
 
 def test_the_video_moves(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("fes_mj.viewing.render.FRAMES", 6)
+    monkeypatch.setattr("fes_mj.viewing.render.LOOP", 0.2)
     path = tmp_path / "out.mp4"
     assert run(["simulate", "r1", "-q", "--render", str(path)]) == 0
     about, frames = frames_of(path)
@@ -25,6 +27,55 @@ def test_the_video_moves(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
     assert np.mean(np.abs(moved[:, :720].astype(int) - scene) > 40) > 0.01  # legs
     assert np.mean(np.abs(moved[:, 720:].astype(int) - panel) > 40) > 0.0005  # cursor
     assert len(np.unique(scene.reshape(-1, 3), axis=0)) > 500  # a picture, not a blank
+    assert np.abs(frames[:6].astype(int) - frames[6:]).max() == 0  # the second time is a copy
+
+
+@pytest.mark.parametrize(("design", "speed"), [("trt", 1.0), ("d1", 1.0), ("d1", 0.5), ("d1", None)])
+def test_the_video_turns_with_the_cadence(design: str, speed: float | None) -> None:
+    """Turns per cadence times frames per second make the number of frames; the crank turns evenly between them."""
+    case = fes_mj.Case(fes_mj.load_design(design), fes_mj.load_moments())
+    rpm, rate = case.cadence * 60 / (2 * np.pi), render.FRAMES_PER_SECOND
+    speed = speed or render.slow_motion(case.cadence)
+    steps = render.steps_shown(case.simulation, speed)
+    turns = 1 + int(np.sum(np.diff(steps) < 0))
+    assert len(steps) == round(turns * 60 / rpm * rate / speed)
+    assert turns == {"trt": 5, "d1": {1.0: 7, 0.5: 4}.get(speed, 1)}[design]  # in 4 s at 60.1 and 96.4 rpm
+    angle = np.unwrap(case.simulation.crank_angle[steps])
+    step = 2 * np.pi * rpm / 60 * speed / rate  # rad from frame to frame, but for the rounding of frames and of steps
+    rounding = 0.5 * step / len(steps) + 1.001 * case.cadence * case.simulation.timestep
+    assert np.diff(angle) == pytest.approx(step, abs=rounding)
+
+
+def test_true_speed_tells_designs_apart_where_slow_motion_does_not() -> None:
+    runs = {name: fes_mj.Case(fes_mj.load_design(name), fes_mj.load_moments()).simulation for name in ("trt", "d1")}
+    turned = {}  # deg in ten frames
+    for name, simulated in runs.items():
+        for speed in (render.slow_motion(simulated.cadence), 1.0):
+            angle = np.degrees(simulated.crank_angle[render.steps_shown(simulated, speed)])
+            turned[name, speed == 1] = angle[10] - angle[0]
+    assert turned["trt", False] == pytest.approx(360 * 10 / 120, abs=0.5)
+    assert turned["d1", False] == pytest.approx(360 * 10 / 120, abs=0.5)
+    assert turned["trt", True] == pytest.approx(360 * 60.13 / 60 / 3, rel=0.01)
+    assert turned["d1", True] == pytest.approx(360 * 96.40 / 60 / 3, rel=0.01)
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["--speed", "1"], "--speed is that of a video; it needs --render OUT.mp4"),
+        *(
+            (["--render", "v.mp4", "--speed", value], f"--speed is {value}; at 96.4 rpm it must be from 0.0104 to 6.23")
+            for value in ("0", "nan", "1000")
+        ),
+    ],
+)
+def test_a_speed_that_nobody_can_watch_is_one_message(
+    words: list[str], message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(["simulate", "d1", *words]) == 2
+    error = capsys.readouterr().err
+    assert error.startswith(f"fes_mj: {message}")
+    assert error.count("\n") == 1
 
 
 def test_without_the_video_packages_the_message_names_the_extra(
@@ -46,9 +97,9 @@ def test_a_full_disk_is_one_message(
 
     class Full(mediapy.VideoWriter):
         def __init__(self, path: Path, *arguments: object, **options: object) -> None:
-            super().__init__("/dev/full", *arguments, ffmpeg_args="-f mp4", **options)
+            super().__init__("/dev/full", *arguments, **options | {"ffmpeg_args": "-f mp4"})
 
-    monkeypatch.setattr("fes_mj.viewing.render.FRAMES", 2)
+    monkeypatch.setattr("fes_mj.viewing.render.LOOP", 0.1)
     monkeypatch.setattr(mediapy, "VideoWriter", Full)
     assert run(["simulate", "d1", "-q", "--render", str(tmp_path / "v.mp4")]) == 2
     error = capsys.readouterr().err

@@ -25,7 +25,7 @@ def measure(job: Job) -> Answer:
         "free": plant.num_velocities() - 2 * plant.num_constraints(),
         "keeps": {"geoms": inspector.num_geometries(), "motors": plant.num_actuators()},
     }
-    if "steps" not in job:
+    if "samples" not in job:
         return answer
     simulator = Simulator(builder.Build())
     context = plant.GetMyMutableContextFromRoot(simulator.get_mutable_context())
@@ -33,14 +33,29 @@ def measure(job: Job) -> Answer:
         joint = plant.GetJointByName(name)
         joint.set_angle(context, angle)
         joint.set_angular_rate(context, rate)
+    moments = np.zeros(plant.num_actuators())
+    for motor, moment in job["controls"].items():
+        moments[plant.GetJointActuatorByName(motor).input_start()] = moment
+    plant.get_actuation_input_port().FixValue(context, moments)
     acceleration = plant.get_generalized_acceleration_output_port().Eval(context)
     answer["acceleration"] = {
         name: float(acceleration[plant.GetJointByName(name).velocity_start()]) for name in job["joints"]
     }
-    simulator.AdvanceTo(job["steps"] * job["timestep"])
-    shank = plant.GetBodyByName("shank")
-    pedal = plant.CalcPointsPositions(context, shank.body_frame(), np.array(job["pedal"]), plant.world_frame())
-    answer["pedal"] = pedal[[0, 2], 0].tolist()
+    joints, answer["states"] = [plant.GetJointByName(name) for name in job["joints"]], []
+    for count in job["samples"]:
+        simulator.AdvanceTo(count * job["timestep"])
+        angles, speeds = (
+            [float(values(context)[at(joint)]) for joint in joints]
+            for values, at in (
+                (plant.GetPositions, lambda joint: joint.position_start()),
+                (plant.GetVelocities, lambda joint: joint.velocity_start()),
+            )
+        )
+        answer["states"].append([angles, speeds])
+        if "pedal" in job and len(answer["states"]) == 1:
+            frame = plant.GetBodyByName("shank").body_frame()
+            pedal = plant.CalcPointsPositions(context, frame, np.array(job["pedal"]), plant.world_frame())
+            answer["pedal"] = pedal[[0, 2], 0].tolist()
     return answer
 
 

@@ -9,15 +9,15 @@ from protocol import Answer, Job, serve
 
 def measure(job: Job) -> Answer:
     model = mujoco.MjModel.from_xml_path(job["model"])
-    data = start(model)
-    jacobian = data.efc_J.reshape(-1, model.nv)
-    answer = {
-        "joints": model.njnt,
-        "loops": int(data.ne // 3),
-        "free": model.nv - int(np.linalg.matrix_rank(jacobian, tol=1e-6)),
-        "keeps": keeps(model),
-    }
-    return answer | motion(model, job) if "steps" in job else answer
+    answer = counted(model, start(model)) | {"keeps": keeps(model)}
+    return answer | motion(model, job) if "samples" in job else answer
+
+
+def counted(model: mujoco.MjModel, data: mujoco.MjData) -> dict[str, int]:
+    """Joints, loops, and the degrees of freedom that they and a fixed gear leave."""
+    jacobian = np.asarray(data.efc_J).reshape(-1, model.nv)[: int(data.ne)]
+    free = model.nv - int(np.linalg.matrix_rank(jacobian, tol=1e-6))
+    return {"joints": model.njnt, "loops": int(data.ne) // 3, "free": free}
 
 
 def keeps(model: mujoco.MjModel) -> dict[str, int]:
@@ -33,39 +33,65 @@ def keeps(model: mujoco.MjModel) -> dict[str, int]:
     }
 
 
-def start(model: mujoco.MjModel) -> mujoco.MjData:
+def start(model: mujoco.MjModel, controls: dict[str, float] | None = None) -> mujoco.MjData:
     """The state of the keyframe, with its accelerations."""
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, 0)
+    for motor, moment in (controls or {}).items():
+        data.actuator(motor).ctrl = moment
     mujoco.mj_forward(model, data)
     return data
 
 
+def run(model: mujoco.MjModel, data: mujoco.MjData, job: Job) -> Answer:
+    """States at the samples, and the pedal at the first."""
+    states, answer, done = [], {}, 0
+    for count in job["samples"]:
+        for _ in range(count - done):
+            mujoco.mj_step(model, data)
+        done = count
+        states.append([data.qpos.tolist(), data.qvel.tolist()])
+        if "pedal" in job and len(states) == 1:
+            probe = mujoco.MjData(model)
+            probe.qpos[:] = data.qpos
+            mujoco.mj_kinematics(model, probe)
+            answer["pedal"] = probe.site("shank_pedal").xpos[[0, 2]].tolist()
+    return answer | {"states": states}
+
+
 def motion(model: mujoco.MjModel, job: Job) -> Answer:
     """Acceleration and pedal, and how much they change with loops twice as soft and with half the time step."""
-    acceleration = accelerations(model)
-    pedal = final_pedal(model, job["steps"])
-    model.opt.timestep /= 2
-    finer_pedal = final_pedal(model, 2 * job["steps"])
-    model.opt.timestep *= 2
+    controls = job["controls"]
+    acceleration, answer = accelerations(model, controls), run(model, start(model, controls), job)
+    if "pedal" in job:
+        answer["step_change"] = step_change(model, job)
     model.eq_solimp[:, :2] = 1 - 2 * (1 - model.eq_solimp[:, :2])
-    softer = accelerations(model)
+    softer = accelerations(model, controls)
     names = [model.joint(i).name for i in range(model.njnt)]
-    return {
+    return answer | {
         "acceleration": dict(zip(names, acceleration[0].tolist(), strict=True)),
         "without_velocity_term": dict(zip(names, acceleration[1].tolist(), strict=True)),
-        "pedal": pedal.tolist(),
         "softness_change": float(np.abs(softer - acceleration).max()),
-        "step_change": float(np.linalg.norm(finer_pedal - pedal)),
     }
 
 
-def accelerations(model: mujoco.MjModel) -> np.ndarray:
+def step_change(model: mujoco.MjModel, job: Job) -> float:
+    """How far half the time step moves the pedal at the first sample with an integrator of first order, m."""
+    integrator, step, count = model.opt.integrator, model.opt.timestep, job["samples"][0]
+    model.opt.integrator, pedals = mujoco.mjtIntegrator.mjINT_EULER, []
+    for parts in (1, 2):
+        model.opt.timestep = step / parts
+        pedals.append(run(model, start(model), job | {"samples": [parts * count]})["pedal"])
+    model.opt.integrator, model.opt.timestep = integrator, step
+    return float(np.linalg.norm(np.subtract(*pedals)))
+
+
+def accelerations(model: mujoco.MjModel, controls: dict[str, float]) -> np.ndarray:
     """Joint accelerations, rad/s^2, shape (2, joints): MuJoCo's, and what it gives without dJ/dt v in its loops.
 
     Some readers lack that term: their loops follow the velocity, not the acceleration, of the motion.
     """
-    data = start(model)
+    data = start(model, controls)
     jacobian, mass = data.efc_J.reshape(-1, model.nv), np.zeros((model.nv, model.nv))
     mujoco.mj_fullM(model, data, mass)
     stiffness, damping, impedance = data.efc_KBIP[:, :3].T
@@ -73,15 +99,6 @@ def accelerations(model: mujoco.MjModel) -> np.ndarray:
     weighted = jacobian.T * data.efc_D
     without = np.linalg.solve(mass + weighted @ jacobian, mass @ data.qacc_smooth + weighted @ reference)
     return np.array([data.qacc, without])
-
-
-def final_pedal(model: mujoco.MjModel, steps: int) -> np.ndarray:
-    """Where the pedal is (x, z; m) after so many steps from the keyframe."""
-    data = start(model)
-    for _ in range(steps):
-        mujoco.mj_step(model, data)
-    mujoco.mj_kinematics(model, data)
-    return data.site("shank_pedal").xpos[[0, 2]].copy()
 
 
 if __name__ == "__main__":

@@ -24,7 +24,7 @@ def measure(job: Job) -> Answer:
             "keyframe": len(keyframes),
         },
     }
-    if "steps" not in job:
+    if "samples" not in job:
         return answer
     position, speed = np.zeros(model.nq), np.zeros(model.nv)
     for name, (angle, rate) in job["joints"].items():
@@ -50,15 +50,19 @@ def measure(job: Job) -> Answer:
     jacobian = pinocchio.getConstraintsJacobian(model, data, loops, parts)
     answer["free"] = model.nv - int(np.linalg.matrix_rank(jacobian, tol=1e-6))
     answer["acceleration"] = {name: float(first[model.joints[model.getJointId(name)].idx_v]) for name in job["joints"]}
-    for _ in range(job["steps"]):  # Runge-Kutta of fourth order: what differs from MuJoCo is MuJoCo's own step error
-        k1 = rates(state)
-        k2 = rates(state + step / 2 * k1)
-        k3 = rates(state + step / 2 * k2)
-        k4 = rates(state + step * k3)
-        state = state + step / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
-    position = state[: model.nq]
-    pinocchio.framesForwardKinematics(model, data, position)
-    answer["pedal"] = data.oMf[model.getFrameId("shank_pedal")].translation[[0, 2]].tolist()
+    places, done, answer["states"] = [model.joints[model.getJointId(name)].idx_q for name in job["joints"]], 0, []
+    for count in job["samples"]:
+        for _ in range(count - done):  # Runge-Kutta of fourth order
+            k1 = rates(state)
+            k2 = rates(state + step / 2 * k1)
+            k3 = rates(state + step / 2 * k2)
+            k4 = rates(state + step * k3)
+            state = state + step / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
+        done, (position, speed) = count, np.split(state, 2)
+        answer["states"].append([position[places].tolist(), speed[places].tolist()])
+        if "pedal" in job and len(answer["states"]) == 1:
+            pinocchio.framesForwardKinematics(model, data, position)
+            answer["pedal"] = data.oMf[model.getFrameId("shank_pedal")].translation[[0, 2]].tolist()
     return answer
 
 

@@ -3,10 +3,11 @@
     python READER.py JOBS.json ANSWERS.json
 
 A job names a model file and, if its motion is wanted, how it starts and how it is stepped: `joints` {name: [angle
-(rad), speed (rad/s)]}, `timestep` (s), `steps`, and where on the body `shank` the pedal is (m). The answer says
-what the reader made of it: `joints`, `loops`, `free` (degrees of freedom left by the loops), `keeps` (parts of
-the model by kind), and of the motion `acceleration` {joint: rad/s^2} at the start and `pedal` [x, z] (m) at the end;
-or `error`.
+(rad), speed (rad/s)]} (of the road: m, m/s), `controls` {motor: N m}, `timestep` (s), `samples` (numbers of steps), and
+where on the body `shank` the pedal is (m), if that is wanted. The answer says what the reader made of it: `joints`,
+`loops`, `free` (degrees of freedom left by the loops), `keeps` (parts of the model by kind), and of the motion
+`acceleration` {joint: rad/s^2} at the start, `states` [angles, speeds] at each sample in the order of the joints, and
+`pedal` [x, z] (m) at the first; or `error`.
 """
 
 from __future__ import annotations

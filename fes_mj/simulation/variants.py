@@ -1,0 +1,110 @@
+"""Variants of the exported model: what drives the joints, what the crank meets, legs, anchors, and who reads it."""
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from fes_mj.design import LEGS, TWO_LEGS, Design
+from fes_mj.errors import InputError
+from fes_mj.joints import JOINTS
+from fes_mj.moments import JointMoments
+from fes_mj.ride import Ride
+from fes_mj.simulation.appearance import Spec
+from fes_mj.simulation.mjcf import INTEGRATORS, SERVO, build_mjcf
+from fes_mj.simulation.road import build_road_mjcf
+from fes_mj.statics import quasi_static
+from fes_mj.time_step import steps_per_turn
+from fes_mj.torque_map import torque_map
+from fes_mj.units import RPM
+
+# Variant -> what it sets: what the crank meets (servo, if nothing is said), how the tricycle of the road is geared, or
+# an argument of build_mjcf. Several may be combined unless they set the same thing differently.
+VARIANTS: dict[str, dict[str, Any]] = {
+    "sites": {"anchors": "sites"},
+    "bodies": {"anchors": "bodies"},
+    "passive": {"driven": False},
+    "free": {"crank": "free"},
+    "brake": {"crank": "brake"},
+    "ride": {"crank": "road", "legs": len(TWO_LEGS)},  # nobody rides on one
+    "fixed-gear": {"transmission": "fixed"},
+    "two-legs": {"legs": len(TWO_LEGS)},
+    "compatible": {"compatible": True},
+}
+# Where the tricycle's inertia or its like rests on the crank, one evaluation a step keeps the energy well enough.
+LADEN = "implicitfast"
+# A motor's range per largest moment of the torque map. Muscles that lengthen under Hill's relation give 1.4 times that,
+# and a controller may want more than the muscles have.
+HEADROOM = 2.0
+RANGE_STEP = 5.0  # N m, to which ranges are rounded up
+
+
+def variant_options(variants: Iterable[str]) -> dict[str, Any]:
+    """What a combination of variants sets. Raises InputError for unknown ones and for those that make no sense."""
+    options: dict[str, Any] = {}
+    said: dict[str, str] = {}
+    for name in variants:
+        if name not in VARIANTS:
+            raise InputError(f"variant is {name!r}; it must be one of {', '.join(VARIANTS)}")
+        for key, value in VARIANTS[name].items():
+            if options.setdefault(key, value) != value:
+                raise InputError(f"the variants {said[key]} and {name} exclude each other; give one of them")
+            said.setdefault(key, name)
+    if "transmission" in options and options.get("crank") != "road":
+        raise InputError("the variant fixed-gear is about the tricycle on the road; give it with ride")
+    return options
+
+
+def variant_model(design: Design, moments: JointMoments, cadence: float, options: Mapping[str, Any]) -> Spec:
+    """The model at a cadence (rad/s) with what variant_options gives.
+
+    The moments set the range of the motors and the strength of the brake. Raises InputError as build_mjcf, and for a
+    brake where the moments deliver no power.
+    """
+    chosen = dict(options)
+    crank, transmission = chosen.pop("crank", "servo"), chosen.pop("transmission", "freewheel")
+    if crank == "road":
+        ride = Ride(design, moments, transmission=transmission)
+        del chosen["legs"]
+        spec = build_road_mjcf(replace(ride, launch=cadence * ride.travel), integrator=LADEN, **chosen)
+    elif crank == "brake":
+        step = 2 * math.pi / cadence / steps_per_turn(design, cadence)  # the flywheel lets no turn be much faster
+        spec = build_mjcf(design, cadence=cadence, timestep=step, held=False, **chosen)
+        _add_brake(spec, design, moments, cadence, chosen.get("legs", 1))
+    else:
+        spec = build_mjcf(design, cadence=cadence, held=crank == "servo", **chosen)
+    _limit_controls(spec, moments, cadence)
+    return spec
+
+
+def _add_brake(spec: Spec, design: Design, moments: JointMoments, cadence: float, legs: int) -> None:
+    """An ergometer: a flywheel with the tricycle's inertia, and a brake that takes the muscles' power at the cadence.
+
+    The brake's moment grows with the crank's speed. The work per turn of moments that do not depend on speed then asks
+    for just this cadence, as a mean over the crank angle.
+    """
+    power = sum(quasi_static(design, moments.of_leg(leg.prefix), cadence).power_mean for leg in LEGS[legs])
+    if power <= 0:
+        raise InputError(
+            f"{design.name}, {moments.name}: the moments deliver {power:.3g} W at {cadence / RPM:.4g} rpm, so there is "
+            "nothing for a brake to take; leave out the variant brake, or give free"
+        )
+    spec.option.integrator = INTEGRATORS[LADEN]
+    ride, crank = Ride(design, moments), spec.joint("crank")
+    crank.armature = ride.load.inertia * ride.travel**2
+    crank.damping = (power / cadence**2, 0.0, 0.0)
+
+
+def _limit_controls(spec: Spec, moments: JointMoments, cadence: float) -> None:
+    """Ranges of all controls: motors in N m, either way; the servo in rad/s, up to twice the cadence."""
+    for actuator in spec.actuators:
+        if actuator.name == SERVO:
+            actuator.ctrlrange = (0.0, 2 * cadence)
+        else:
+            joint = next(joint for joint in JOINTS if actuator.name.endswith(joint))
+            largest = float(np.abs(torque_map(moments.of_leg(actuator.name)).table[joint]).max())
+            limit = RANGE_STEP * max(1, math.ceil(HEADROOM * largest / RANGE_STEP))
+            actuator.ctrlrange = (-limit, limit)
+        actuator.ctrllimited = True

@@ -1,0 +1,34 @@
+"""Bars: outlines as thick as the video's parts, on the bodies that they belong to."""
+
+import numpy as np
+import pytest
+
+import fes_mj
+from fes_mj.segments import foot_points
+from fes_mj.simulation.appearance import PARTS
+from fes_mj.style import LINKS, hex_colour, rgb
+from fes_mj.viewing.bars import bars
+
+
+def test_an_outline_is_half_a_thickness_from_its_line(design: fes_mj.Design) -> None:
+    origin, direction = 0.3 - 0.2j, np.exp(0.7j)
+    for bar in bars(design):
+        if bar.start == bar.end:
+            continue
+        local = (bar.outline(origin, direction) - origin) / direction  # back in the body's frame
+        along = (bar.end - bar.start) / abs(bar.end - bar.start)
+        offset = (local - bar.start) / along
+        nearest = np.clip(offset.real, 0, abs(bar.end - bar.start))
+        assert np.abs(offset - nearest) == pytest.approx(PARTS[bar.part].size, rel=1e-9)
+
+
+def test_links_wear_the_videos_colours_and_the_boot_holds_the_foot(design: fes_mj.Design) -> None:
+    drawn = [*bars(design)]
+    for bar in drawn:
+        if bar.part in LINKS:
+            assert bar.colour == hex_colour(rgb(LINKS[bar.part]))
+    _, heel, toe = foot_points(design)
+    boot = drawn[[bar.part for bar in drawn].index("boot") + 1].outline(0j, 1.0)
+    sole = (toe - heel) / abs(toe - heel)
+    reach = ((boot - heel) / sole).real  # with its round ends from heel to toe
+    assert (reach.min(), reach.max()) == pytest.approx((0, abs(toe - heel)), abs=1e-9)

@@ -1,0 +1,98 @@
+"""The tools that read exported models, and what each can be held to."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+Answer = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Reader:
+    """A tool that reads MJCF, and what it can be held to.
+
+    velocity_term: its loops know dJ/dt v; otherwise its accelerations are compared with MuJoCo's without that term.
+    acceleration: limit in rad/s^2 from the reference answer. pedal: limit in m. without: motions that it does not know,
+    and why. still: motions that it is only asked to begin. most: steps that it is asked for, where it is slow.
+    """
+
+    title: str
+    anchors: str
+    velocity_term: bool
+    acceleration: Callable[[Answer], float]
+    pedal: Callable[[Answer], float]
+    reason: str
+    requirements: tuple[str, ...] = ()  # where they are not an extra of this project
+    without: dict[str, str] = field(default_factory=dict)
+    still: tuple[str, ...] = ()
+    most: int | None = None
+
+
+def _rounding(dtype: type[np.floating[Any]]) -> Callable[[Answer], float]:
+    """The four rounded coordinates of a loop, near 1 m, times its stiffness over the length of the crank."""
+    return lambda reference: 4 * float(np.finfo(dtype).eps) * reference["stiffness"] / reference["crank"]
+
+
+def _softness(factor: float) -> Callable[[Answer], float]:
+    return lambda reference: factor * float(reference["softness_change"])
+
+
+def _steps(reference: Answer) -> float:
+    """What an integrator of first order may err by, twice: each by about twice its change from half the step."""
+    return 4 * float(reference["step_change"])
+
+
+READERS = {
+    "mujoco": Reader(
+        "MuJoCo", "sites", True, lambda _: 0.0, lambda _: 0.0, "the reference: another process must find the very same"
+    ),
+    "mjx": Reader(
+        "MJX",
+        "sites",
+        False,
+        _rounding(np.float64),
+        _steps,
+        "loops without dJ/dt v, otherwise MuJoCo's equations in double precision; no `discrete` integrator",
+        still=("two legs",),  # each motion takes it a minute to compile
+    ),
+    "warp": Reader(
+        "MuJoCo Warp",
+        "sites",
+        False,
+        _rounding(np.float32),
+        _steps,
+        "loops without dJ/dt v; single precision, whose rounding the stiff loops turn into accelerations",
+        most=200,  # on a CPU it takes 30 to 60 ms for one
+    ),
+    "pinocchio": Reader(
+        "Pinocchio",
+        "sites",
+        True,
+        _softness(2),
+        _steps,
+        "rigid loops, where MuJoCo's give way a little; it has no simulator",
+        without={"ride": "drops the tendon that couples road and crank", "motors": "drops motors"},
+    ),
+    "drake": Reader(
+        "Drake",
+        "bodies",
+        False,
+        _softness(10),
+        _steps,
+        "loops that hold the velocity of the next step, softer than MuJoCo's; it drops loops anchored at sites",
+        without={"ride": "refuses air resistance, a damping that grows with the speed"},
+    ),
+    "dm_control": Reader(
+        "dm_control",
+        "sites",
+        True,
+        _rounding(np.float64),
+        lambda _: 1e-9,
+        "the same engine, but it needs MuJoCo below 4",
+        ("dm-control==1.0.50", "mujoco==3.17.0"),
+    ),
+}

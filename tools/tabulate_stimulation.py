@@ -1,0 +1,58 @@
+"""Write results/stimulation.md: the windows of the five designs, and how wide they are beside those in use.
+
+python -m tools.tabulate_stimulation
+"""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+from fes_mj.design_file import DESIGNS, load_design
+from fes_mj.files import write_text
+from fes_mj.stimulation import CORE, LEAST_SHARE, stimulation
+from fes_mj.table import Table
+from fes_mj.units import RPM
+
+PATH = Path(__file__).parents[1] / "results" / "stimulation.md"
+LAGS = (0.06, 0.15)  # s, the span of what cycles in use advance by
+
+
+def main() -> None:
+    rows, leads = [], []
+    for name in DESIGNS:
+        design = load_design(name)
+        cadence = design.linkage.cadence
+        for window in stimulation(design, [cadence]):
+            if window.leg == "right":
+                found = window.record(design)
+                both = found["both_joints_deg"]
+                angles = (*found["works_deg"], found["width_deg"], found["core_width_deg"], found["joint_swing_deg"])
+                rows.append((name.upper(), window.muscle, found["moment"], *angles, both))
+        leads.append((name.upper(), cadence / RPM, *(math.degrees(cadence * lag) for lag in LAGS)))
+    write_text(PATH, "\n".join((HEADING, Table("", COLUMNS, rows).markdown(), Table("", LEADS, leads).markdown())))
+
+
+HEADING = f"""# Stimulation windows
+
+Written by `python -m tools.tabulate_stimulation`. Right leg, no lag; angles in deg from the crank arm pointing
+backwards. *Core*: the part of a window in which the joint moves at least {CORE:g} times as fast per crank angle as at
+best there. Windows with less than {100 * LEAST_SHARE:g} % of the joint's swing are left out. *Both*: in how much of the
+hamstrings' window the hip extends as well. Below, what the crank turns in {LAGS[0]:g} and {LAGS[1]:g} s.
+"""
+COLUMNS = {
+    "design": "",
+    "muscle": "",
+    "moment": "",
+    "from": ".0f",
+    "to": ".0f",
+    "width": ".0f",
+    "core": ".0f",
+    "joint swing": ".1f",
+    "both": ".0f",
+}
+LEADS = {"design": "", "cadence, rpm": ".1f", **{f"lead of {lag:g} s, deg": ".0f" for lag in LAGS}}
+
+
+if __name__ == "__main__":
+    main()
