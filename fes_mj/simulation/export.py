@@ -32,7 +32,7 @@ _COMMENTS = {
     'integrator="RK4"': "Nothing holds the crank, and Runge-Kutta keeps its energy within 0.5 % over 5 s.",
     'integrator="implicitfast"': "The crank is laden with so much inertia that one evaluation a step keeps the energy.",
     "<geom contype": "Geoms are pictures: they neither weigh nor touch.",
-    "<equality solref": "With MuJoCo's defaults the loops open by millimetres and the mean power falls by up to 43 %.",
+    "<equality solref": "With MuJoCo's defaults the loops open by up to 14.4 mm and the mean power is lost.",
     "<inertial": "Planar: only the moment about y acts; the other two repeat it.",
     "<connect": "Loops are cut at passive pins that carry no drive, no limit and no friction.",
     "<motor": "Net joint moments, N m, extension positive.",
