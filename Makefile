@@ -42,10 +42,11 @@ benchmark: $(VENV)/.ready
 	$(BIN)/python -m tools.benchmark_video
 
 # Every check on every design, refined, with all faults injected: results/verification.md; every ride by both solvers:
-# results/ride_verification.md
+# results/ride_verification.md; what each setting of the simulation is worth: results/settings.md
 verification: $(VENV)/.ready
 	$(BIN)/python tools/update_verification.py
 	$(BIN)/python -m tools.verify_ride
+	$(BIN)/python -m tools.measure_settings
 
 # What the package ships as data: the identified designs and the recovered moments.
 catalogue: $(VENV)/.ready

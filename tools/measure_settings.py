@@ -67,7 +67,7 @@ def measured(name: str) -> dict[str, Any]:
         "servo of 1e6: rms, W @.4f": case.rms_per_leg(weak),
         "its ripple at 1 rpm @.1e": slow.cadence_ripple,
         "plain mj_step: rms, W @.4f": case.rms_per_leg(case.run(make_loop=plain_loop)),
-        "its error per e1 @.2f": _per_first_order(idle, idle.run(make_loop=plain_loop)),
+        "its error per e1 @.2f": per_first_order(idle, idle.run(make_loop=plain_loop)),
         "static mean against 36,000 angles @.0e": abs(mean / quasi_static(design, moments, points=MANY).power_mean - 1),
     }
 
@@ -100,7 +100,7 @@ def plain_loop(torque: TorqueMap, drives: dict[str, str]) -> Loop:
     return loop
 
 
-def _per_first_order(case: Case, run: Simulation) -> float:
+def per_first_order(case: Case, run: Simulation) -> float:
     """Error of the crank power per the e1 of docs/theory.md, by least squares."""
     motion = case.motion(run.crank_angle)
     expected = first_order_error(motion, case.cadence, run.timestep)
@@ -136,10 +136,10 @@ def main() -> None:
     columns = {name: form for name, _, form in (key.partition(" @") for key in rows[0])}
     note = (
         "rms: crank power over the turn against the exact inverse dynamics. Of it by joint moments: beyond what the "
-        "closed form of the time step's error says. MuJoCo's loops: solref 0.02 s, solimp 0.9, and the softness of a "
-        "ten-thousandth of the inverse weights; its softness alone in the column after next. 1e-5 s: time constant of "
-        "the loops, against 1e-7 s. Servo in N m s/rad. Plain mj_step: without the lead of half a step; its error per "
-        "the e1 of docs/theory.md is by least squares and without joint moments."
+        "closed form of the time step's error says. MuJoCo's loops: solref 0.02 s, solimp 0.9, and its softness, a "
+        "ten-thousandth of the bodies' inverse weights; that softness alone in the column after next. 1e-5 s: time "
+        "constant of the loops, against 1e-7 s. Servo in N m s/rad. Plain mj_step: without the lead of half a step; "
+        "its error per the e1 of docs/theory.md is by least squares and without joint moments."
     )
     table = Table("One setting changed at a time", columns, [tuple(row.values()) for row in rows], note)
     origin = "Written by `python -m tools.measure_settings`; see docs/theory.md."

@@ -29,10 +29,10 @@ INTEGRATORS = {
     "rk4": mujoco.mjtIntegrator.mjINT_RK4,
 }
 SERVO = "crank_servo"
-SERVO_GAIN = 1e11  # N m s/rad; 1e6 leaves 2 W rms of crank power in sharp linkages, 1e15 is still free of rounding
+SERVO_GAIN = 1e11  # N m s/rad; 1e6 lets the cadence ripple by twice its limit at 1 rpm (results/settings.md)
 FLYWHEEL = 1e6  # kg m^2 of crank armature; holds the cadence to 1e-6 without a servo
-# With MuJoCo's defaults (0.02 s, 0.9) the loops open by 2 to 6 mm and the mean power falls by 43 % (R2) and 26 % (D1).
-# 1e-5 s doubles the gap at a step of 0.02 ms. Other integrators than `discrete` raise it to two time steps.
+# What MuJoCo's defaults (0.02 s, 0.9) and 1e-5 s do instead is in results/settings.md. Other integrators than
+# `discrete` raise the time constant to two time steps.
 LOOP_SOLREF = (1e-7, 1.0)
 LOOP_SOLIMP = (0.9999, 0.9999, 0.001, 0.5, 2.0)
 

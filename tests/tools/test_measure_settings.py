@@ -1,0 +1,34 @@
+"""What the settings are worth: the closed form of the first-order error, and the page against one measured today."""
+
+from pathlib import Path
+
+import pytest
+
+import fes_mj
+from fes_mj.crosscheck import Case
+from tools.measure_settings import NO_MOMENTS, per_first_order, plain_loop
+
+PAGE = Path(__file__).parents[2] / "results" / "settings.md"
+
+
+def row(name: str) -> dict[str, str]:
+    """A design's row of the page by column."""
+    names, _, *rows = (line.strip("|").split("|") for line in PAGE.read_text().splitlines() if line.startswith("|"))
+    cells = next(cells for cells in rows if cells[0].strip() == name.upper())
+    return {key.strip(): cell.strip() for key, cell in zip(names, cells, strict=True)}
+
+
+@pytest.mark.parametrize("name", ["r1", "d1"])
+def test_a_plain_step_errs_as_the_closed_form_says(name: str) -> None:
+    idle = Case(fes_mj.load_design(name), NO_MOMENTS)
+    found = per_first_order(idle, idle.run(make_loop=plain_loop))
+    assert found == pytest.approx(1, abs=0.1)
+    assert float(row(name)["its error per e1"]) == pytest.approx(found, abs=0.006)
+
+
+@pytest.mark.parametrize("name", ["r1", "d1"])
+def test_the_page_is_todays(name: str) -> None:
+    case = Case(fes_mj.load_design(name), fes_mj.load_moments())
+    assert float(row(name)["rms, W"]) == pytest.approx(case.rms_per_leg(case.simulation), abs=6e-5)
+    plain = case.rms_per_leg(case.run(make_loop=plain_loop))
+    assert float(row(name)["plain mj_step: rms, W"]) == pytest.approx(plain, abs=6e-5)
