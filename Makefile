@@ -61,12 +61,13 @@ reproduce: $(VENV)/.ready
 models: $(VENV)/.ready
 	$(BIN)/python tools/make_models.py
 
-# Every picture of README, docs, mjcf/ and results/ again; the last from results/optimization/ripple.json.
+# Every picture of README, docs, mjcf/ and results/ again; that of the ripple from ripple.json.
 pictures: $(VENV)/.ready reproduce
 	$(BIN)/python tools/make_models.py --pictures
 	$(BIN)/python -m tools.picture_demo
 	$(BIN)/python -m tools.picture_explore
 	$(BIN)/python -m tools.power_and_ripple --picture
+	$(BIN)/python -m tools.ride_baseline
 
 # Install the other readers of the models, each into an environment of its own, and compare them with MuJoCo.
 readers: $(VENV)/.ready

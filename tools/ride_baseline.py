@@ -1,4 +1,4 @@
-"""The environment of examples/ride_env.py under a table of stimulation and under chance: results/ride_env.* and figure.
+"""The environment of examples/ride_env.py under a table of stimulation and under chance: results/ride_env.*, a picture.
 
 python -m tools.ride_baseline
 """
@@ -57,7 +57,7 @@ def main() -> None:
 
 def _draw(rows: Sequence[tuple[Any, ...]], runs: dict[tuple[str, str, str], dict[str, np.ndarray]]) -> None:
     """Speed over time of some designs, and the return of all, with the freewheel."""
-    with mpl.rc_context(STYLE), replacing(RESULTS / "figures" / "ride-environment.png") as beside:
+    with mpl.rc_context(STYLE), replacing(RESULTS / "ride-environment.png") as beside:
         figure = Figure(figsize=(9.6, 3.8), layout="constrained")
         over_time, returns = figure.subplots(1, 2, width_ratios=[1.5, 1])
         for name, colour in zip(DRAWN, SERIES, strict=True):

@@ -30,7 +30,16 @@ def main() -> None:
                 angles = (*found["works_deg"], found["width_deg"], found["core_width_deg"], found["joint_swing_deg"])
                 rows.append((name.upper(), window.muscle, found["moment"], *angles, both))
         leads.append((name.upper(), cadence / RPM, *(math.degrees(cadence * lag) for lag in LAGS)))
-    write_text(PATH, "\n".join((HEADING, Table("", COLUMNS, rows).markdown(), Table("", LEADS, leads).markdown())))
+    write_text(
+        PATH,
+        "\n".join(
+            (
+                HEADING,
+                Table("", COLUMNS, rows).markdown(),
+                Table("What the crank turns in the lag", LEADS, leads).markdown(),
+            )
+        ),
+    )
 
 
 HEADING = f"""# Stimulation windows
@@ -38,7 +47,7 @@ HEADING = f"""# Stimulation windows
 Written by `python -m tools.tabulate_stimulation`. Right leg, no lag; angles in deg from the crank arm pointing
 backwards. *Core*: the part of a window in which the joint moves at least {CORE:g} times as fast per crank angle as at
 best there. Windows with less than {100 * LEAST_SHARE:g} % of the joint's swing are left out. *Both*: in how much of the
-hamstrings' window the hip extends as well. Below, what the crank turns in {LAGS[0]:g} and {LAGS[1]:g} s.
+hamstrings' window the hip extends as well.
 """
 COLUMNS = {
     "design": "",

@@ -40,6 +40,8 @@ def test_any_file_name_gives_valid_xml(tmp_path: Path) -> None:
         (["d1", "-o", "{folder}/none/x.xml"], "does not exist"),
         (["d1", "-o", "{folder}/scene.xml", "--scene"], "another name"),
         (["d1", "-o", "{folder}/x.xml", "--variant", "sites", "--variant", "bodies"], "exclude each other"),
+        (["d1", "-o", "{folder}/x.xml", "--variant", "ride", "--variant", "free"], "exclude each other"),
+        (["d1", "-o", "{folder}/x.xml", "--variant", "fixed-gear"], "give it with ride"),
         (["r2", "--dims", "printed", "-o", "{folder}/x.xml"], "cannot close at crank angle"),
     ],
 )
