@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from fes_mj.cli.app import run
+from fes_mj.design_file import load_design
 from fes_mj.simulation.variants import VARIANTS
 
 ROOT = Path(__file__).parents[1]
@@ -82,6 +83,17 @@ def test_the_keys_of_the_windows_are_those_of_the_file(tmp_path: Path) -> None:
     header = (tmp_path / "windows.csv").read_text().splitlines()[0].split(",")
     for name in re.findall(r"`(\w+_(?:deg|rpm|Hz|s))`", (DOCS / "stimulation.md").read_text()):
         assert name in header or f"{name.removesuffix('_deg')}_on_deg" in header, name
+
+
+def test_the_design_file_that_is_shown_is_accepted(tmp_path: Path) -> None:
+    (tmp_path / "mine.toml").write_text(next(content for kind, content in blocks("files.md") if kind == "toml"))
+    assert load_design(tmp_path / "mine.toml").linkage.kind == "cdt"
+
+
+def test_python_as_shown_runs(capsys: pytest.CaptureFixture[str]) -> None:
+    exec(next(content for kind, content in blocks("structure.md") if kind == "python"), {})
+    static, dynamic = map(float, capsys.readouterr().out.split())
+    assert dynamic == pytest.approx(static, rel=5e-4)
 
 
 def test_every_variant_is_in_the_table() -> None:

@@ -11,7 +11,7 @@ from fes_mj.arrays import FloatArray
 from fes_mj.errors import UnstableError
 from fes_mj.torque_map import TorqueMap
 
-# An exact pose with exact velocities still rings for some six steps, while the stiff loops find their forces.
+# An exact pose with exact velocities still rings for a few steps, while the stiff loops find their forces.
 PRE_ROLL = 20  # steps
 FORCE_EVERY = 8  # steps; reading the constraint forces costs a tenth of a step
 # MuJoCo softens a constraint by a ten-thousandth of its bodies' inverse weights: too much for a loop near its dead
