@@ -30,7 +30,7 @@ def facts() -> Known:
 @pytest.fixture(scope="module")
 def runs() -> Runs:
     """What the figures over a turn need."""
-    some = Runs({}, {}, {}, {}, {}, [])
+    some = Runs(static={}, printed={}, hill={}, dynamic={}, people={}, rides=[], budgets={})
     for name in ("trt", "r2", "d1"):
         for group in GROUPS:
             design, moments = fes_mj.load_design(name), fes_mj.load_moments(group)
