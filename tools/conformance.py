@@ -242,7 +242,7 @@ def judge(
 
 def _motion(reader: Reader, motion: str, task: Job, answer: Answer, expected: Answer) -> Motion:
     """A motion's start beside MuJoCo's, and by MuJoCo what becomes of its energy and its loops."""
-    right = expected["acceleration" if reader.velocity_term else "without_velocity_term"]
+    right = expected[reader.beside]
     got = answer.get("acceleration", dict.fromkeys(right, math.nan))
     error, drift, gap = max(abs(got[joint] - right[joint]) for joint in right), math.nan, math.nan
     if answer.get("states"):
