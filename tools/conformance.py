@@ -301,12 +301,14 @@ def table(found: list[Row]) -> str:
     for name in dict.fromkeys(row.reader for row in found):
         dropped = dict.fromkeys(part for row in found if row.reader == name for part in row.drops)
         reader = READERS[name]
-        without = "; ".join(f"{motion}: {why}" for motion, why in reader.without.items())
-        if reader.most:
-            without = f"the horizon: {reader.most} steps a motion"
+        without = [
+            *(f"{motion}: {why}" for motion, why in reader.without.items()),
+            *(f"{motion}: only begun" for motion in reader.still),
+            *([f"the horizon: {reader.most} steps a motion"] if reader.most else []),
+        ]
         lines.append(
             f"| {reader.title} | {reader.anchors} | {reader.reason} | {', '.join(dropped) or 'nothing'} "
-            f"| {without or ', '.join(f'{motion}: only begun' for motion in reader.still) or '-'} |"
+            f"| {'; '.join(without) or '-'} |"
         )
     return "\n".join(lines) + "\n"
 

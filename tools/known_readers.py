@@ -63,6 +63,7 @@ READERS = {
         _rounding(np.float64),
         _steps,
         "loops without dJ/dt v, otherwise MuJoCo's equations in double precision; no `discrete` integrator",
+        without={"ride": "leaves out air resistance, a damping that grows with the speed"},
         still=("two legs",),  # each motion takes it a minute to compile
     ),
     "warp": Reader(
