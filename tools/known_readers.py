@@ -42,6 +42,11 @@ def _softness(factor: float) -> Callable[[Answer], float]:
     return lambda reference: factor * float(reference["softness_change"])
 
 
+def _regularisation(reference: Answer) -> float:
+    """Half of what it changes: it is estimated loop by loop, without the effect of one loop on another."""
+    return float(reference["near_rigid_change"]) / 2
+
+
 def _steps(reference: Answer) -> float:
     """What an integrator of first order may err by, twice: each by about twice its change from half the step."""
     return 4 * float(reference["step_change"])
@@ -88,9 +93,7 @@ READERS = {
         "Drake",
         "bodies",
         "near_rigid",
-        lambda reference: (
-            float(reference["near_rigid_change"]) / 2
-        ),  # which knows nothing of one loop's effect on another
+        _regularisation,
         _steps,
         "loops that hold the velocity of the next step, as soft as its regularisation makes them; it drops loops "
         "anchored at sites",
