@@ -3,7 +3,8 @@
 python examples/mjx_rollout.py       # needs mujoco-mjx: pip install 'fes-mj[mjx]'; compiling takes a minute
 
 Each copy pedals with the recovered moments commanded by crank angle, led by another angle; muscles answer with a lag of
-first order. What comes out is how far each has come, beside the angle by which such a lag trails.
+first order. What comes out is how far each has come, beside the angle by which such a lag trails. MJX leaves out the
+air's resistance.
 """
 
 import os

@@ -242,7 +242,7 @@ def judge(
 
 def _motion(reader: Reader, motion: str, task: Job, answer: Answer, expected: Answer) -> Motion:
     """A motion's start beside MuJoCo's, and by MuJoCo what becomes of its energy and its loops."""
-    right = expected["acceleration" if reader.velocity_term else "without_velocity_term"]
+    right = expected[reader.beside]
     got = answer.get("acceleration", dict.fromkeys(right, math.nan))
     error, drift, gap = max(abs(got[joint] - right[joint]) for joint in right), math.nan, math.nan
     if answer.get("states"):
@@ -301,12 +301,14 @@ def table(found: list[Row]) -> str:
     for name in dict.fromkeys(row.reader for row in found):
         dropped = dict.fromkeys(part for row in found if row.reader == name for part in row.drops)
         reader = READERS[name]
-        without = "; ".join(f"{motion}: {why}" for motion, why in reader.without.items())
-        if reader.most:
-            without = f"the horizon: {reader.most} steps a motion"
+        without = [
+            *(f"{motion}: {why}" for motion, why in reader.without.items()),
+            *(f"{motion}: only begun" for motion in reader.still),
+            *([f"the horizon: {reader.most} steps a motion"] if reader.most else []),
+        ]
         lines.append(
             f"| {reader.title} | {reader.anchors} | {reader.reason} | {', '.join(dropped) or 'nothing'} "
-            f"| {without or ', '.join(f'{motion}: only begun' for motion in reader.still) or '-'} |"
+            f"| {'; '.join(without) or '-'} |"
         )
     return "\n".join(lines) + "\n"
 

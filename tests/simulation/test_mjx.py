@@ -33,9 +33,10 @@ def test_the_ride_rolls_out_in_mjx() -> None:
         return jax.lax.fori_loop(1, 1000, lambda _, current: mjx.step(put, current), begin)
 
     final = np.asarray(roll(mjx.put_data(model, data)).qpos)
+    model.dof_dampingpoly[:] = 0.0  # MJX leaves out the air's resistance
     mujoco.mj_step(model, data, nstep=1000)
     assert np.isfinite(final).all()
-    assert final[0] == pytest.approx(data.joint("road").qpos[0], rel=1e-3)
+    assert final[0] == pytest.approx(data.joint("road").qpos[0], rel=2e-4)
     data.qpos[:] = final
     mujoco.mj_forward(model, data)
     gaps = [model.sensor(i).name for i in range(model.nsensor) if model.sensor(i).name.endswith("_gap")]
