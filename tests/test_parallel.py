@@ -65,6 +65,7 @@ def test_tasks_are_spread_over_processes() -> None:
     assert os.getpid() not in processes
 
 
+@pytest.mark.long
 def test_a_sweep_survives_kill_9(tmp_path: Path) -> None:
     """Killed with chunks done and chunks to do; then finished chunks are kept as they are, none is counted twice."""
     study, folder = study_file(tmp_path, chunk=400, size=5000), tmp_path / "out"

@@ -63,6 +63,7 @@ def test_the_default_speed_limit_is_that_of_the_trt(capsys: pytest.CaptureFixtur
     assert slower["power_mean_W"] < found["power_mean_W"]
 
 
+@pytest.mark.long
 def test_riders_of_a_population_are_listed_with_their_seats(capsys: pytest.CaptureFixture[str]) -> None:
     people = ["--riders", "population", "--samples", "50", "--sample-seed", "1"]
     search = ["optimize", "crt", "--budget", "12000", "--searches", "1", *people]
@@ -161,8 +162,8 @@ def found_with(path: Path) -> list[str]:
         [],
         ["--group", "p1p3", "--speeds-of", "d2", "--start", "d2", "--caution", "1", "--knee-speed-limit", "170"],
         ["--problem", "it's a *problem*\x07.toml", "--moments", "-m.csv"],
-        ["--method", "nsga-ii", "--smooth"],
-        ["--riders", "population-p10"],
+        pytest.param(["--method", "nsga-ii", "--smooth"], marks=pytest.mark.long),
+        pytest.param(["--riders", "population-p10"], marks=pytest.mark.long),
     ],
 )
 def test_the_command_in_the_file_gives_the_same_bytes_again(

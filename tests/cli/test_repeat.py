@@ -21,9 +21,9 @@ sys.exit(run(sys.argv[1:]))
 @pytest.mark.parametrize(
     "arguments",
     [
-        ["simulate", "d1", "--out", ".", "--render", "v.mp4", "--legs", "2"],
+        pytest.param(["simulate", "d1", "--out", ".", "--render", "v.mp4", "--legs", "2"], marks=pytest.mark.long),
         ["simulate", "r1", "--json"],
-        ["validate", "r2", "--quick", "--report", "r.html", "--junit", "j.xml"],
+        pytest.param(["validate", "r2", "--quick", "--report", "r.html", "--junit", "j.xml"], marks=pytest.mark.long),
         ["export", "d2", "-o", "m.xml", "--scene", "--variant", "two-legs"],
     ],
     ids=" ".join,

@@ -175,6 +175,7 @@ def _killed_again_and_again(folder: Path, kills: int, seed: int) -> None:
     assert sweep.read().equals(undisturbed.read())
 
 
+@pytest.mark.long
 def test_a_sweep_killed_twice_has_the_rows_of_an_undisturbed_one(tmp_path: Path) -> None:
     _killed_again_and_again(tmp_path, 2, 1)
 

@@ -101,6 +101,7 @@ def test_seats_stay_within_the_limits_of_fit_and_the_linkage_stays() -> None:
         assert back == drawn.linkage
 
 
+@pytest.mark.long
 def test_a_search_finds_a_design_that_suits_people_better() -> None:
     """Within the joint speeds that the printed design gives its own rider; by the seats that `fit` finds afterwards."""
     pytest.importorskip("cma")

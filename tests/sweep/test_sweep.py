@@ -49,6 +49,7 @@ def test_cadence_follows_the_gear_ratio_unless_it_varies(study: Path, tmp_path: 
         assert row["cadence_rpm"] == pytest.approx(design.cadence * 30 / math.pi)
 
 
+@pytest.mark.long
 def test_a_dynamic_study_agrees_with_statics(tmp_path: Path) -> None:
     pytest.importorskip("numba")
     path = tmp_path / "study.toml"
