@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import copy
+import itertools
 import json
+import math
 from pathlib import Path
 from typing import Any
 
@@ -11,8 +13,10 @@ import pytest
 
 from fes_mj import load_design
 from fes_mj.design_file import DESIGNS
-from tools.conformance import MOTIONS, RESULTS, Row, interpreter, jobs, judge, reference, rows
-from tools.known_readers import READERS
+from tools.conformance.asking import ROOT, interpreter, reference, rows
+from tools.conformance.judging import Row, judge
+from tools.conformance.motions import MOTIONS, jobs
+from tools.conformance.readers import READERS
 
 Asked = tuple[dict[Any, Any], dict[Any, Any]]  # jobs, MuJoCo's answers
 
@@ -75,11 +79,11 @@ def test_the_judge_refuses_every_fault(good: dict[Any, Any], asked: Asked) -> No
         for anchors in ("sites", "bodies"):
             faulty["trt", anchors, "one leg"][part] = value
         assert not judged("pinocchio", faulty, asked).ok, part
-    for motion in MOTIONS:
-        faulty = copy.deepcopy(good)
-        joint = next(iter(faulty["trt", "sites", motion]["acceleration"]))
-        faulty["trt", "sites", motion]["acceleration"][joint] += 1.0
-        assert not judged("mujoco", faulty, asked).ok, motion
+    for motion, error in itertools.product(MOTIONS, (1.0, math.nan)):
+        for joint in good["trt", "sites", motion]["acceleration"]:
+            faulty = copy.deepcopy(good)
+            faulty["trt", "sites", motion]["acceleration"][joint] += error
+            assert not judged("mujoco", faulty, asked).ok, (motion, joint, error)
     refused = {key: {"error": "ValueError: no"} for key in good}
     row = judged("pinocchio", refused, asked)
     assert not row.ok
@@ -93,7 +97,7 @@ def test_the_judge_refuses_every_fault(good: dict[Any, Any], asked: Asked) -> No
 def test_the_judge_sees_energy_and_gaps_at_the_horizon(motion: str, good: dict[Any, Any], asked: Asked) -> None:
     """The last state faster by a tenth, or its angles larger by a thousandth; or no states at all."""
     assert judged("mujoco", good, asked).ok
-    for part, factor, spoilt in ((1, 1.1, "energy"), (0, 1.001, "gap")):
+    for part, factor, spoilt in ((1, 1.1, "energy"), (0, 1.001, "gap"), (0, math.nan, "all")):
         faulty = copy.deepcopy(good)
         states = faulty["trt", "sites", motion]["states"]
         states[-1][part] = [factor * value for value in states[-1][part]]
@@ -105,10 +109,10 @@ def test_the_judge_sees_energy_and_gaps_at_the_horizon(motion: str, good: dict[A
 
 
 def test_the_kept_table_is_complete_and_good() -> None:
-    kept = json.loads((RESULTS / "readers.json").read_text())["rows"]
+    kept = json.loads((ROOT / "results" / "readers.json").read_text())["rows"]
     assert {(row["reader"], row["design"]) for row in kept} == {
         (reader, name) for reader in READERS for name in DESIGNS
     }
     assert all(row["ok"] for row in kept)
-    table = Path(RESULTS / "readers.md").read_text(encoding="utf-8")
+    table = Path(ROOT / "results" / "readers.md").read_text(encoding="utf-8")
     assert table.count("| ok |") == len(kept)

@@ -21,6 +21,7 @@ def measure(job: Job) -> Answer:
     mujoco.mj_resetDataKeyframe(model, data, 0)
     for motor, moment in job.get("controls", {}).items():
         data.actuator(motor).ctrl = moment
+    model.opt.timestep = job.get("timestep", model.opt.timestep)
     put, start = mjx.put_model(model), mjx.put_data(model, data)
     jax.eval_shape(mjx.step, put, start)  # refuses what MJX does not know, without compiling
     loops = int((model.eq_type == mujoco.mjtEq.mjEQ_CONNECT).sum())

@@ -79,7 +79,19 @@ def motion(model: mujoco.MjModel, job: Job) -> Answer:
         "softness_change": float(np.abs(softer - acceleration).max()),
         "near_rigid": dict(zip(names, near_rigid[1].tolist(), strict=True)),
         "near_rigid_change": float(np.abs(near_rigid - acceleration)[1].max()),
+        "loop_gain": loop_gain(model, start(model, controls)),
     }
+
+
+def loop_gain(model: mujoco.MjModel, data: mujoco.MjData) -> float:
+    """Largest joint acceleration, rad/s^2, if every coordinate of every loop asks for 1 m/s^2 in the worst direction.
+
+    Near a dead centre it is large: there a small gap takes a large turn to close.
+    """
+    jacobian, mass = data.efc_J.reshape(-1, model.nv)[: int(data.ne)], np.zeros((model.nv, model.nv))
+    mujoco.mj_fullM(model, data, mass)
+    weighted = jacobian.T * data.efc_D[: int(data.ne)]
+    return float(np.abs(np.linalg.solve(mass + weighted @ jacobian, weighted)).sum(axis=1).max())
 
 
 def step_change(model: mujoco.MjModel, job: Job) -> float:

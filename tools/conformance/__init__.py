@@ -1,0 +1,1 @@
+"""Which tools read the exported models, and how well."""
