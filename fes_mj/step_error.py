@@ -109,4 +109,4 @@ def _pose(design: Design, crank_angle: FloatArray, step: float) -> _Pose:
         carrier = linkage.architecture.pedal_body
         base = linkage.crank_centre if carrier == "crank" else linkage.ground
         close(("thigh", "shank"), carrier, linkage.pedal_offset, 0j, base)
-    return _Pose(motion, links, rates, max(gaps))
+    return _Pose(motion, links, rates, float(np.max(gaps)))

@@ -66,7 +66,7 @@ def _needed_steps(design: Design, cadence: float) -> float:
     errors, limits = predicted_errors(design, cadence, TRIAL), definitions()
     allowed = Errors(*(SHARE * limits[name].limit for name in Errors._fields))
     allowed = allowed._replace(mean_power=LEAST_POWER * allowed.mean_power)
-    ratio = max(error / limit for error, limit in zip(errors, allowed, strict=True))
+    ratio = float(np.max(np.divide(errors, allowed)))
     if not math.isfinite(ratio):
         return math.inf
     steps = max(FEWEST_STEPS, math.ceil(2 * math.pi / TRIAL * math.sqrt(ratio)))

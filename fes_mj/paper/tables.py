@@ -72,8 +72,8 @@ def check_table(runs: Runs) -> Table:
     rows = []
     for (name, group, legs), case in runs.dynamic.items():
         run = case.simulation
-        worst = max(case.checks, key=lambda check: check.value / check.limit)
-        share = f"{worst.name.replace('_', ' ')}: {100 * worst.value / worst.limit:.0f} %"
+        worst = max(case.checks, key=lambda check: check.factor)
+        share = f"{worst.name.replace('_', ' ')}: {100 * worst.factor:.0f} %"
         measured = (100 * case.relative_difference, 1e6 * run.loop_gap_max, 1e12 * run.cadence_ripple)
         cells = (str(legs), 1e3 * run.timestep, *measured, share, "yes" if case.agrees else "NO")
         rows.append((name.upper(), group, *cells))

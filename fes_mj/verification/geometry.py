@@ -37,7 +37,7 @@ def closure_error(motion: Motion) -> float:
     ]
     if design.linkage.architecture.pedal_body != "crank":
         errors.append(np.abs(np.abs(point["pedal"] - point["rocker_joint"]) - design.linkage.pedal_arm).max())
-    return float(max(errors))
+    return float(np.max(errors))
 
 
 def wrong_branch(motion: Motion) -> float:
@@ -61,9 +61,9 @@ def rate_errors(motion: Motion) -> tuple[float, float]:
     ]
     angle, rotation = motion.joint_angle.map(np.unwrap), motion.joint_rotation
     pairs += [(angle[joint], *rotation[joint]) for joint in JOINTS]
-    first = max(_relative_error(fourier_derivative(value), rate) for value, rate, _ in pairs)
-    second = max(_relative_error(fourier_derivative(rate), change) for _, rate, change in pairs)
-    return first, second
+    first = np.max([_relative_error(fourier_derivative(value), rate) for value, rate, _ in pairs])
+    second = np.max([_relative_error(fourier_derivative(rate), change) for _, rate, change in pairs])
+    return float(first), float(second)  # by NumPy, whose largest of a NaN and a number is the NaN
 
 
 def fourier_derivative(values: Any) -> NDArray[Any]:

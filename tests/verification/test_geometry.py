@@ -6,7 +6,7 @@ import pytest
 import fes_mj
 from fes_mj import kinematics
 from fes_mj.kinematics import Rotation
-from fes_mj.verification.geometry import fourier_derivative, rate_errors
+from fes_mj.verification.geometry import closure_error, fourier_derivative, rate_errors
 
 
 def test_a_fourier_derivative_is_exact() -> None:
@@ -21,3 +21,16 @@ def test_rate_errors_see_an_error_of_a_millionth(design: fes_mj.Design, monkeypa
     first, second = motion.rotation["thigh"]
     motion.rotation["thigh"] = Rotation(first * (1 + 1e-6), second)
     assert rate_errors(motion)[0] > 1e-8
+
+
+def test_a_nan_anywhere_is_an_error(design: fes_mj.Design) -> None:
+    """Whichever body it is in: the largest of a number and a NaN is the NaN."""
+    for body in ("thigh", "shank"):
+        motion = kinematics.solve(design, np.linspace(0, 2 * np.pi, 512, endpoint=False))
+        first, second = motion.rotation[body]
+        motion.rotation[body] = Rotation(first * np.nan, second * np.nan)
+        assert np.isnan(rate_errors(motion)).all(), body
+    for point in motion.points:
+        motion = kinematics.solve(design, np.linspace(0, 2 * np.pi, 8, endpoint=False))
+        motion.points[point] = motion.points[point]._replace(value=np.nan)
+        assert np.isnan(closure_error(motion)), point
