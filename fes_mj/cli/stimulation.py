@@ -108,4 +108,5 @@ def _print(design: Design, windows: list[Window]) -> None:
 
 
 def _span(angles: list[float]) -> str:
-    return f"{angles[0]:.0f} to {angles[1]:.0f}"
+    begin, end = (round(angle) % 360 for angle in angles)
+    return f"{begin} to {end}"
