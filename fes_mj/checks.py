@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from fes_mj.errors import InputError
-from fes_mj.files import read_toml
+from fes_mj.inputs import read_toml
 
 _FILE = Path(__file__).parent / "data" / "checks.toml"
 # A leg that delivers less than this is held to the limits of this much: what discretisation leaves behind does not

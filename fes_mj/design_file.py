@@ -9,7 +9,7 @@ import numpy as np
 from fes_mj.arrays import FloatArray
 from fes_mj.design import ARCHITECTURES, BRANCHES, Design, Linkage, Rider
 from fes_mj.errors import InputError
-from fes_mj.files import Section, is_number, read_toml
+from fes_mj.inputs import Section, is_number, read_toml
 from fes_mj.riders import PRESETS, preset
 from fes_mj.segments import DE_LEVA
 from fes_mj.text import printable

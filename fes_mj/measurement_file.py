@@ -11,8 +11,8 @@ from fes_mj import kinematics
 from fes_mj.arrays import FloatArray
 from fes_mj.design_file import read_values
 from fes_mj.errors import AssemblyError, InputError
-from fes_mj.files import Section, Table, read_toml
 from fes_mj.geometry import require_assembly
+from fes_mj.inputs import Section, Table, read_toml
 from fes_mj.joints import JOINTS, PerJoint
 from fes_mj.loads import leg_moments
 from fes_mj.misreading import odd_angles

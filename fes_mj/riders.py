@@ -11,7 +11,7 @@ import numpy as np
 
 from fes_mj.arrays import FloatArray
 from fes_mj.design import Rider
-from fes_mj.files import read_toml
+from fes_mj.inputs import read_toml
 
 PRESETS = (
     "ansur-man-pN or ansur-woman-pN, N a percentile from 1 to 99, with -sci after it for the leg masses after a spinal "

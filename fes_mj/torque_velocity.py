@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from fes_mj.arrays import FloatArray
-from fes_mj.files import read_toml
+from fes_mj.inputs import read_toml
 from fes_mj.joints import JOINTS
 
 _NUMBERS = ("curvature", "eccentric_plateau")

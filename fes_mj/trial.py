@@ -8,7 +8,7 @@ import numpy as np
 
 from fes_mj.arrays import FloatArray, IntArray
 from fes_mj.errors import InputError
-from fes_mj.files import Table, read_table
+from fes_mj.inputs import Table, read_table
 
 WHAT = "joint moments"
 OPENSIM = (".sto", ".mot")
@@ -28,7 +28,7 @@ class Turn(NamedTuple):
 
 
 def load_table(path: Path, what: str) -> Table:
-    """A CSV or an OpenSim file. Raises InputError as files.read_table."""
+    """A CSV or an OpenSim file. Raises InputError as inputs.read_table."""
     opensim = path.suffix.lower() in OPENSIM
     return read_table(path, what, after="endheader" if opensim else "", commas=not opensim)
 

@@ -7,21 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from fes_mj import files
+from fes_mj import inputs
 from fes_mj.errors import InputError
-from fes_mj.files import (
-    Section,
-    csv_text,
-    read_json,
-    read_table,
-    read_text,
-    read_toml,
-    replacing,
-    require_replaceable,
-    require_writable,
-    write_files,
-    write_text,
-)
+from fes_mj.files import csv_text, replacing, require_replaceable, require_writable, write_files, write_text
+from fes_mj.inputs import Section, read_json, read_table, read_text, read_toml
 
 
 def _section(tmp_path: Path, text: str) -> Section:
@@ -89,7 +78,7 @@ def test_unreadable_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
             read_text(path, "test file")
     large = tmp_path / "large"
     large.write_bytes(b"12345")
-    monkeypatch.setattr(files, "LARGEST_INPUT", 4)
+    monkeypatch.setattr(inputs, "LARGEST_INPUT", 4)
     with pytest.raises(InputError, match="it is larger than"):
         read_text(large, "test file")
 

@@ -14,7 +14,7 @@ import numpy as np
 from fes_mj.arrays import FloatArray
 from fes_mj.design import Design
 from fes_mj.design_file import identified_draws, load_design
-from fes_mj.files import read_toml
+from fes_mj.inputs import read_toml
 from fes_mj.joints import JOINTS
 from fes_mj.kinematics import FULL_TURN
 from fes_mj.moment_samples import sampled_coefficients

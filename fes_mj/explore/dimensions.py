@@ -7,7 +7,7 @@ from typing import Any
 from fes_mj.design import Design, Linkage
 from fes_mj.design_file import design_toml, read_design
 from fes_mj.errors import InputError
-from fes_mj.files import Section
+from fes_mj.inputs import Section
 from fes_mj.text import printable
 from fes_mj.units import RPM
 from fes_mj.variables import COMPONENTS, VARIABLES, Component, component

@@ -14,7 +14,7 @@ from typing import Any
 from fes_mj.console import say
 from fes_mj.errors import InputError, MissingPartError, UnstableError
 from fes_mj.explore.answers import Answers
-from fes_mj.files import LARGEST_INPUT
+from fes_mj.inputs import LARGEST_INPUT
 
 _FOLDER = Path(__file__).parent / "page"
 _FILES = {

@@ -16,7 +16,8 @@ import numpy as np
 from fes_mj.arrays import FloatArray
 from fes_mj.design_file import design_toml
 from fes_mj.errors import InputError
-from fes_mj.files import json_text, make_folder, read_json, write_text
+from fes_mj.files import json_text, make_folder, write_text
+from fes_mj.inputs import read_json
 from fes_mj.optimization.problem import Problem
 from fes_mj.optimization.search import Result
 from fes_mj.provenance import digest

@@ -8,7 +8,7 @@ import numpy as np
 
 from fes_mj.arrays import ComplexArray, FloatArray
 from fes_mj.errors import InputError
-from fes_mj.files import Section, is_number, read_toml
+from fes_mj.inputs import Section, is_number, read_toml
 from fes_mj.variables import LENGTHS
 
 DEFAULT = Path(__file__).parents[1] / "data" / "optimization.toml"

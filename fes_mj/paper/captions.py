@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import Any
 
-from fes_mj.files import Section, read_toml
+from fes_mj.inputs import Section, read_toml
 from fes_mj.paper.printed import DATA
 from fes_mj.table import Table
 

@@ -10,8 +10,8 @@ from fes_mj import kinematics
 from fes_mj.arrays import FloatArray
 from fes_mj.design_file import DESIGNS, load_design
 from fes_mj.errors import InputError
-from fes_mj.files import Section, read_toml
 from fes_mj.fourier import fourier
+from fes_mj.inputs import Section, read_toml
 from fes_mj.joints import JOINTS
 from fes_mj.moments import GROUPS
 from fes_mj.paper.printed import DATA

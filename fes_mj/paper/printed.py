@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from fes_mj.files import read_toml
+from fes_mj.inputs import read_toml
 from fes_mj.verification.case import Expected
 
 DATA = Path(__file__).parents[1] / "data"

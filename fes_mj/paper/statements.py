@@ -15,8 +15,8 @@ import numpy as np
 from fes_mj.arrays import BoolArray, FloatArray
 from fes_mj.design_file import load_design
 from fes_mj.errors import InputError
-from fes_mj.files import read_toml
 from fes_mj.fourier import TERMS
+from fes_mj.inputs import read_toml
 from fes_mj.joints import JOINTS
 from fes_mj.kinematics import solve
 from fes_mj.moments import GROUPS

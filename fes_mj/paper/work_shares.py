@@ -5,8 +5,8 @@ from typing import NamedTuple
 import numpy as np
 
 from fes_mj.arrays import FloatArray
-from fes_mj.files import read_toml
 from fes_mj.fourier import fourier
+from fes_mj.inputs import read_toml
 from fes_mj.joints import PerJoint
 from fes_mj.paper.captions import captioned
 from fes_mj.paper.evidence import own_leg_motion

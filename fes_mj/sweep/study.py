@@ -12,7 +12,7 @@ from fes_mj.arrays import FloatArray
 from fes_mj.design import Design
 from fes_mj.design_file import load_design
 from fes_mj.errors import InputError
-from fes_mj.files import Section, is_number, read_toml
+from fes_mj.inputs import Section, is_number, read_toml
 from fes_mj.moments import GROUPS, JointMoments
 from fes_mj.moments_file import load_moments, measured_files
 from fes_mj.time_step import LONGEST_TIMESTEP

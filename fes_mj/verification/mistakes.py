@@ -16,7 +16,7 @@ import numpy as np
 from fes_mj.arrays import FloatArray
 from fes_mj.crosscheck import Case
 from fes_mj.design import Design
-from fes_mj.files import read_toml
+from fes_mj.inputs import read_toml
 from fes_mj.joints import PerJoint
 from fes_mj.kinematics import Jet, Motion, Rotation
 from fes_mj.reference_tricycle import PAPER_TRICYCLE

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import fes_mj
-from fes_mj.files import read_toml
+from fes_mj.inputs import read_toml
 from fes_mj.moments import GROUPS
 from fes_mj.paper.printed import DATA
 from fes_mj.paper.reproduce import figures_page

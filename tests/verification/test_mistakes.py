@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from fes_mj.checks import definitions
-from fes_mj.files import read_toml
+from fes_mj.inputs import read_toml
 from fes_mj.verification.mistakes import EDITS, STEPS, faults
 
 ROOT = Path(__file__).parents[2]
