@@ -13,7 +13,9 @@ from fes_mj.arrays import FloatArray
 from fes_mj.checks import LEAST_POWER, Check, check
 from fes_mj.files import csv_text
 from fes_mj.ride import Ride, Trace
-from fes_mj.simulation.road import TIMESTEP, RoadRun, compiled_road_loop, ride_on_road, road_loop
+from fes_mj.simulation.road import RoadRun, ride_on_road
+from fes_mj.simulation.road_control import compiled_road_loop, road_loop
+from fes_mj.simulation.road_mjcf import TIMESTEP
 
 DISTANCES = 2000  # at which the two speeds are compared
 

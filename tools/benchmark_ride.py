@@ -15,7 +15,9 @@ from fes_mj.files import json_text, write_text
 from fes_mj.moments_file import load_moments
 from fes_mj.provenance import provenance
 from fes_mj.ride import Ride
-from fes_mj.simulation.road import TIMESTEP, build_road_mjcf, compiled_road_loop, ride_on_road
+from fes_mj.simulation.road import ride_on_road
+from fes_mj.simulation.road_control import compiled_road_loop
+from fes_mj.simulation.road_mjcf import TIMESTEP, build_road_mjcf
 from fes_mj.torque_velocity import load_torque_velocity
 from tools import benchmark
 

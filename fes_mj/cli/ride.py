@@ -231,7 +231,7 @@ def _results(ride: Ride, folder: Path, starts: bool, inputs: Sequence[Path]) -> 
 
 def _write(case: RideCase, starts: Starts | None, paths: dict[str, Path]) -> None:
     from fes_mj.simulation.export import mjcf_text
-    from fes_mj.simulation.road import build_road_mjcf
+    from fes_mj.simulation.road_mjcf import build_road_mjcf
 
     texts = {
         "json": json_text(case.summary() | (starts.summary() if starts else {})),

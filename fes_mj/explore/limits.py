@@ -6,7 +6,8 @@ from typing import Any, NamedTuple
 
 from fes_mj.design import Design
 from fes_mj.moments_file import load_moments
-from fes_mj.optimization.problem import LENGTH_COUNT, Constraint, Problem, make_problem
+from fes_mj.optimization.constraints import Constraint, length_values
+from fes_mj.optimization.problem import LENGTH_COUNT, Problem, make_problem
 from fes_mj.statics import QuasiStatic
 from fes_mj.text import typeset
 
@@ -52,7 +53,7 @@ def _lengths(problem: Problem, design: Design) -> dict[str, float]:
     """Values of the limits on lengths by name, m; a TRT has no rocker, and the design space is six-bars'."""
     if design.linkage.kind == "trt":
         return {"crank_length": design.linkage.crank, "ankle_to_pedal": design.linkage.foot}
-    values = problem.length_values(design, problem.variables(design)[None, :LENGTH_COUNT])[0]
+    values = length_values(design, problem.variables(design)[None, :LENGTH_COUNT], problem.limits.polygon)[0]
     return dict(zip((each.name for each in problem.geometry), values.tolist(), strict=True))
 
 

@@ -3,46 +3,36 @@
 import math
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from fes_mj.arrays import BoolArray, FloatArray
 from fes_mj.batch import single, take
-from fes_mj.cycles import TURN_POINTS, Cycles, WorkTable, cycles, joint_speeds, uncertain_table
+from fes_mj.cycles import TURN_POINTS, WorkTable, cycles, joint_speeds, uncertain_table
 from fes_mj.design import Design
 from fes_mj.design_file import load_design
 from fes_mj.errors import InputError
-from fes_mj.geometry import LEAST_CLEARANCE, grashof_margin
 from fes_mj.joints import JOINTS, PerJoint
 from fes_mj.moments import JointMoments
+from fes_mj.optimization.constraints import (
+    Constraint,
+    length_constraints,
+    length_values,
+    margins,
+    motion_constraints,
+    motion_values,
+)
 from fes_mj.optimization.people import ONE_RIDER, People
-from fes_mj.optimization.problem_file import DEFAULT, VARIED, Limits, depth_inside, load_limits
+from fes_mj.optimization.problem_file import DEFAULT, VARIED, Limits, load_limits
 from fes_mj.optimization.ripple import RippleLimit
-from fes_mj.reference_tricycle import ReferenceTricycle
 from fes_mj.units import RPM
-from fes_mj.variables import COMPONENTS, VARIABLES, component, replaced
+from fes_mj.variables import VARIABLES, component, replaced
 
 LENGTH_COUNT = len(VARIED) - 1  # all variables but the gear ratio, which comes last
 # A design below any feasible one, and each margin it was refused too early to have counts as ten scales.
 INFEASIBLE, _UNKNOWN = -1e4, 10.0
-_LEAST_OVERLAP = 0.1  # deg
 _HAIR = 1e-12  # keeps a number that is computed again on the same side of its limit
-_BOUNDS = np.array([(COMPONENTS[name].variable.low, COMPONENTS[name].variable.high) for name in VARIED[:-1]]).T
-
-
-class Constraint(NamedTuple):
-    """A named limit on a number, in `unit`; `scale` makes violations of different units comparable."""
-
-    name: str
-    unit: str
-    at_least: bool
-    limit: float
-    scale: float
-
-    def margin(self, value: Any) -> Any:
-        """How far inside the limit a value is, in `unit`; negative if it violates it."""
-        return value - self.limit if self.at_least else self.limit - value
 
 
 @dataclass(frozen=True)
@@ -110,34 +100,13 @@ class Problem:
     @property
     def geometry(self) -> tuple[Constraint, ...]:
         """Constraints on the lengths alone."""
-        limits = self.limits
-        return (
-            Constraint("crank_length", "m", True, limits.crank_min, 0.01),
-            Constraint("rocker_length", "m", True, limits.rocker_min, 0.01),
-            Constraint("ankle_to_pedal", "m", False, limits.foot_max, 0.01),
-            Constraint("lengths_inside", "m", True, 0.0, 0.01),
-            Constraint("crank_shortest", "m", True, 0.0, 0.01),
-            Constraint("grashof", "m", True, max(limits.grashof_min, LEAST_CLEARANCE), 0.01),
-            Constraint("rocker_pivot_inside", "m", True, 0.0, 0.01),
-            Constraint("crank_centre_inside", "m", True, 0.0, 0.01),
-        )
+        return length_constraints(self.limits)
 
     @property
     def motion(self) -> tuple[Constraint, ...]:
         """Constraints on the turn."""
-        slack = self.limits.joint_rounding_deg
-        (knee_low, knee_high), (hip_low, hip_high) = self.limits.knee_deg, self.limits.hip_deg
-        return (
-            Constraint("leg_reach", "m", True, LEAST_CLEARANCE, 0.01),
-            Constraint("knee_min", "deg", True, knee_low - slack, 5.0),
-            Constraint("knee_max", "deg", False, knee_high + slack, 5.0),
-            Constraint("hip_min", "deg", True, hip_low - slack, 5.0),
-            Constraint("hip_max", "deg", False, hip_high + slack, 5.0),
-            *(Constraint(f"{joint}_speed", "deg/s", False, speed, 10.0) for joint, speed in self.joint_speed.items()),
-            *(Constraint(f"{joint}_overlap", "deg", True, _LEAST_OVERLAP, 5.0) for joint in JOINTS),
-            Constraint("gear_ratio_min", "", True, self.gear_ratios[0], 0.1),
-            Constraint("gear_ratio", "", False, self.gear_ratios[1], 0.1),
-            *([Constraint("speed_ripple", "", False, self.ripple.limit, 0.05)] if self.ripple else []),
+        return motion_constraints(
+            self.limits, self.joint_speed, self.gear_ratios, self.ripple.limit if self.ripple else None
         )
 
     @property
@@ -187,8 +156,8 @@ class Problem:
         Designs whose lengths already violate a constraint are not turned.
         """
         design, free = self.batch(x), x[:, : len(self.search) - 1]
-        lengths = self.length_values(design, x[:, :LENGTH_COUNT])
-        sound = np.all(_margins(self.geometry, lengths) >= 0, axis=1)
+        lengths = length_values(design, x[:, :LENGTH_COUNT], self.limits.polygon)
+        sound = np.all(margins(self.geometry, lengths) >= 0, axis=1)
         motion = np.full((len(x), len(self.motion)), np.nan)
         power = np.full((len(x), self.table.sets), np.nan)
         chosen = free.shape == x.shape
@@ -205,12 +174,12 @@ class Problem:
                 gear_ratio[sound] = np.fmin(for_all * (1 - _HAIR), self.gear_ratios[1])
             ratios = np.repeat(gear_ratio[sound], riders)
             power[sound] = self.people.power(turn.work * (cadence / (2 * np.pi) * ratios[:, None]))
-            each = _motion_values(turn, self.table.measured_on, speeds, ratios)
+            each = motion_values(turn, self.table.measured_on, speeds, ratios)
             motion[sound] = self._worst(np.column_stack([each, *self._ripple(ridden, each, ratios)]))
         values = np.hstack([lengths, motion])
         scales = np.array([constraint.scale for constraint in self.constraints])
         filled = np.column_stack([free, gear_ratio])
-        return Evaluation(filled, power, values, _margins(self.constraints, values), scales)
+        return Evaluation(filled, power, values, margins(self.constraints, values), scales)
 
     def merit(self, evaluation: Evaluation) -> FloatArray:
         """What is maximised, shape (n,): W if feasible; every infeasible design ranks below, by its violation."""
@@ -234,7 +203,7 @@ class Problem:
         if not self.ripple:
             return []
         found = np.full(len(values), np.nan)
-        good = np.all(_margins(self.motion[: values.shape[1]], values) >= 0, axis=1)
+        good = np.all(margins(self.motion[: values.shape[1]], values) >= 0, axis=1)
         if good.any():
             geared = design.changed({"gear_ratio": gear_ratio[:, None]}, {})
             found[good] = self.ripple.ripple(take(geared, good))
@@ -244,47 +213,6 @@ class Problem:
         """Of each constraint on the turn over all riders, shape (n, constraints); values: (n * riders, constraints)."""
         each = values.reshape(-1, self.people.count, values.shape[1])
         return np.asarray(np.where([c.at_least for c in self.motion], each.min(axis=1), each.max(axis=1)))
-
-    def length_values(self, design: Design, x: FloatArray) -> FloatArray:
-        """Values of the constraints of `geometry`, shape (n, 8); x: the lengths, shape (n, 9)."""
-        linkage, polygon = design.linkage, self.limits.polygon
-        others = np.stack([np.abs(linkage.pivot_to_crank), linkage.coupler, linkage.rocker])
-        columns = (
-            linkage.crank,
-            linkage.rocker,
-            linkage.foot,
-            np.minimum(x - _BOUNDS[0], _BOUNDS[1] - x).min(axis=1),
-            others.min(axis=0) - linkage.crank,
-            grashof_margin(design),
-        )
-        pivots = (np.asarray(linkage.ground), np.asarray(linkage.crank_centre))
-        return np.column_stack(
-            [np.ravel(column) for column in columns] + [depth_inside(polygon, pivot.ravel()) for pivot in pivots]
-        )
-
-
-def _motion_values(
-    turn: Cycles, reference: ReferenceTricycle, speeds: PerJoint[FloatArray], gear_ratio: FloatArray
-) -> FloatArray:
-    """Values of the constraints on the turn but the ripple, in their order, shape (n, 11)."""
-    ranges = [np.degrees(side[joint]) for joint in JOINTS for side in (turn.low, turn.high)]
-    rates = (speeds[joint] * gear_ratio for joint in JOINTS)
-    overlaps = (_overlap(joint, turn, reference) for joint in JOINTS)
-    return np.column_stack([turn.reach, *ranges, *rates, *overlaps, gear_ratio, gear_ratio])
-
-
-def _overlap(joint: str, turn: Cycles, reference: ReferenceTricycle) -> FloatArray:
-    """How far a joint comes into the range of the moments, from whichever side, deg, shape (n,); not above 0: never."""
-    low, high = turn.low[joint], turn.high[joint]
-    (bottom, top), middle = reference.ranges[joint], (low + high) / 2
-    shift = reference.around(joint, middle) - middle
-    overlap = np.degrees(np.minimum(high + shift - bottom, top - low - shift))
-    # the angle beside a dead centre is too sharp for the parabola that found its extreme
-    return np.where(turn.outside[1][joint], np.minimum(overlap, 0.0), overlap)
-
-
-def _margins(constraints: tuple[Constraint, ...], values: FloatArray) -> FloatArray:
-    return np.column_stack([c.margin(values[:, column]) for column, c in enumerate(constraints)])
 
 
 def make_problem(

@@ -16,7 +16,7 @@ from fes_mj.geometry import FROM_TOP, degrees_from_top
 from fes_mj.inverse_dynamics import crank_moment
 from fes_mj.moments import JointMoments
 from fes_mj.simulation.appearance import FIELD_OF_VIEW, Spec, framing, lowest_point
-from fes_mj.simulation.road import ROAD
+from fes_mj.simulation.road_mjcf import ROAD
 from fes_mj.torque_map import torque_map
 
 # What of each file stands at its beginning (files.MARKED) and in nobody else's file.

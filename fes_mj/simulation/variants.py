@@ -14,7 +14,7 @@ from fes_mj.moments import JointMoments
 from fes_mj.ride import Ride
 from fes_mj.simulation.appearance import Spec
 from fes_mj.simulation.mjcf import INTEGRATORS, SERVO, build_mjcf
-from fes_mj.simulation.road import build_road_mjcf
+from fes_mj.simulation.road_mjcf import build_road_mjcf
 from fes_mj.statics import quasi_static
 from fes_mj.time_step import steps_per_turn
 from fes_mj.torque_map import torque_map

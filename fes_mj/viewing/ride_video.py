@@ -10,7 +10,8 @@ import numpy as np
 from fes_mj.arrays import IntArray, Picture
 from fes_mj.ride_case import RideCase
 from fes_mj.simulation.appearance import Spec, lowest_point
-from fes_mj.simulation.road import RoadRun, build_road_mjcf
+from fes_mj.simulation.road import RoadRun
+from fes_mj.simulation.road_mjcf import build_road_mjcf
 from fes_mj.viewing.render import FRAMES_PER_SECOND, PLOT_WIDTH, require_video, write_video
 from fes_mj.viewing.stage import SIDE, stage
 

@@ -1,0 +1,131 @@
+"""The MJCF model of the ride: a tricycle that slides along the road, its legs hung on it; nothing holds the cadence."""
+
+import math
+from typing import Literal
+
+import mujoco
+import numpy as np
+
+from fes_mj import kinematics
+from fes_mj.design import TWO_LEGS
+from fes_mj.ride import Ride
+from fes_mj.segments import GRAVITY
+from fes_mj.simulation.appearance import Spec
+from fes_mj.simulation.bench import joint_drives
+from fes_mj.simulation.mjcf import (
+    INTEGRATORS,
+    LOOP_SOLIMP,
+    LOOP_SOLREF,
+    NO_MINUS,
+    add_motors,
+    build_mjcf,
+    joint_motion,
+)
+
+ROAD, DRIVETRAIN = "road", "drivetrain"  # the joint along the road, m; the tendon road / travel - crank, rad
+# At 60 rpm finer than on the bench. At the 250 rpm that D1 reaches on the flat it makes 1200 steps a turn, and the
+# scheme loses less than 4e-4 of the muscles' work.
+TIMESTEP = 2e-4  # s
+# MuJoCo asks whether a tendon is shorter than its limit plus this. At zero, rounding would open the freewheel.
+TOUCH = 1e-9  # rad
+_FORWARD = (-1.0, 0.0, 0.0)
+_FAR = 1e6  # rad, an upper limit that is never reached: MuJoCo has no one-sided range
+
+
+def build_road_mjcf(
+    ride: Ride,
+    timestep: float = TIMESTEP,
+    *,
+    integrator: str = "discrete",
+    drawn: bool = True,
+    driven: bool = True,
+    compatible: bool = False,
+    anchors: Literal["sites", "bodies"] = "sites",
+) -> Spec:
+    """The model of build_mjcf with both legs (same options), set on the road at the ride's start.
+
+    integrator: one of mjcf.INTEGRATORS; the scheme of ride_on_road is made for `discrete`. compatible: without what MJX
+    does not know, the sensor of the freewheel.
+
+    The tricycle gets its mass and the slide joint `road`; rims are its armature, rolling resistance its friction, air
+    its damping. The slope tilts gravity. The tendon `drivetrain` is road less crank: a fixed gear holds its length; a
+    freewheel only keeps it from becoming shorter, and whoever steps the model raises that limit to the length reached.
+    """
+    spec = build_mjcf(ride.design, timestep=timestep, legs=len(TWO_LEGS), drawn=drawn, driven=False, anchors=anchors)
+    spec.option.timestep, spec.option.integrator = timestep, INTEGRATORS[integrator]
+    spec.comment = f"{ride.name}: both legs on a tricycle that rides"
+    spec.option.gravity = (GRAVITY * math.sin(ride.road.angle), 0.0, -GRAVITY * math.cos(ride.road.angle))
+    load = ride.load
+    body = spec.body("tricycle")
+    body.mass, body.ipos, body.inertia = load.body_mass, (0.0, 0.0, 0.0), [load.body_mass] * 3  # it never turns
+    body.explicitinertial = True
+    slide = body.add_joint(name=ROAD, type=mujoco.mjtJoint.mjJNT_SLIDE, axis=_FORWARD)
+    slide.armature, slide.frictionloss = ride.road.rolling_mass, load.rolling
+    slide.damping = (0.0, load.drag, 0.0)
+    slide.solref_friction, slide.solimp_friction = LOOP_SOLREF, LOOP_SOLIMP
+    _add_drivetrain(spec, ride)
+    if driven:
+        add_motors(spec, TWO_LEGS)
+    _add_sensors(spec, ride, driven, compatible)
+    _replace_keyframe(spec, ride)
+    return spec
+
+
+def _add_drivetrain(spec: Spec, ride: Ride) -> None:
+    tendon = spec.add_tendon(name=DRIVETRAIN)
+    tendon.wrap_joint(ROAD, 1 / ride.travel)
+    tendon.wrap_joint("crank", -1.0)
+    if ride.fixed:
+        gear = spec.add_equality(name=DRIVETRAIN, type=mujoco.mjtEq.mjEQ_TENDON)
+        gear.name1, gear.data[0] = DRIVETRAIN, NO_MINUS - ride.start
+        gear.solref, gear.solimp = LOOP_SOLREF, LOOP_SOLIMP
+    else:
+        tendon.limited, tendon.range, tendon.margin = (
+            mujoco.mjtLimited.mjLIMITED_TRUE,
+            (NO_MINUS - ride.start, _FAR),
+            TOUCH,
+        )
+        tendon.solref_limit, tendon.solimp_limit = LOOP_SOLREF, LOOP_SOLIMP
+
+
+def _add_sensors(spec: Spec, ride: Ride, driven: bool, compatible: bool) -> None:
+    kinds, objects = mujoco.mjtSensor, mujoco.mjtObj
+    for name, kind in ((f"{ROAD}_angle", kinds.mjSENS_JOINTPOS), (f"{ROAD}_speed", kinds.mjSENS_JOINTVEL)):
+        spec.add_sensor(name=name, type=kind, objtype=objects.mjOBJ_JOINT, objname=ROAD)
+    for joint in joint_drives(TWO_LEGS) if driven else ():
+        spec.add_sensor(
+            name=f"{joint}_moment", type=kinds.mjSENS_ACTUATORFRC, objtype=objects.mjOBJ_ACTUATOR, objname=joint
+        )
+    if not ride.fixed and not compatible:
+        spec.add_sensor(
+            name=DRIVETRAIN, type=kinds.mjSENS_TENDONLIMITFRC, objtype=objects.mjOBJ_TENDON, objname=DRIVETRAIN
+        )
+
+
+def _replace_keyframe(spec: Spec, ride: Ride) -> None:
+    """Exact position and velocity at the start of the ride."""
+    spec.delete(spec.key("start"))
+    model = spec.compile()
+    qpos, qvel = np.zeros(model.nq), np.zeros(model.nv)
+    for joint, (angle, speed) in start_state(ride).items():
+        address = model.joint(joint).qposadr[0]
+        qpos[address], qvel[address] = angle, speed
+    spec.add_key(name="start", qpos=qpos, qvel=qvel)
+
+
+def start_state(
+    ride: Ride, before: float = 0.0, gain: dict[str, float] | None = None
+) -> dict[str, tuple[float, float]]:
+    """Position of every joint, and its mean speed over the time `before` (s) that; with none its speed then.
+
+    gain: acceleration of road (m/s^2) and crank (rad/s^2) in that time, by name.
+    """
+    speed = {ROAD: ride.launch, "crank": ride.launch / ride.travel}
+    earlier = {name: speed[name] - before / 2 * (gain or {}).get(name, 0.0) for name in speed}
+    state = {ROAD: (0.0, earlier[ROAD]), "crank": (ride.start, earlier["crank"])}
+    for leg in TWO_LEGS:
+        turn = ride.start - leg.lag - np.array([0.0, earlier["crank"] * before])
+        for joint, (angle, rate, _) in joint_motion(kinematics.solve(ride.design, turn)).items():
+            now, then = np.unwrap(angle)
+            state[leg.prefix + joint] = float(now), float((now - then) / before if before else speed["crank"] * rate[0])
+    return state
