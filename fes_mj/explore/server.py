@@ -17,11 +17,8 @@ from fes_mj.explore.answers import Answers
 from fes_mj.inputs import LARGEST_INPUT
 
 _FOLDER = Path(__file__).parent / "page"
-_FILES = {
-    "/": ("page.html", "text/html"),
-    "/page.css": ("page.css", "text/css"),
-    **{f"/{name}.js": (f"{name}.js", "text/javascript") for name in ("page", "scene", "plot")},
-}
+_KINDS = {".html": "text/html", ".css": "text/css", ".js": "text/javascript"}
+_FILES = {"/": "page.html", **{f"/{path.name}": path.name for path in _FOLDER.iterdir() if path.suffix != ".html"}}
 
 
 class Server(ThreadingTCPServer):
@@ -62,8 +59,8 @@ class Handler(BaseHTTPRequestHandler):
     def do_GET(self) -> None:
         if self.path not in _FILES:
             return self._send(HTTPStatus.NOT_FOUND, "text/plain", b"there is no such page")
-        name, kind = _FILES[self.path]
-        return self._send(HTTPStatus.OK, f"{kind}; charset=utf-8", (_FOLDER / name).read_bytes())
+        file = _FOLDER / _FILES[self.path]
+        return self._send(HTTPStatus.OK, f"{_KINDS[file.suffix]}; charset=utf-8", file.read_bytes())
 
     def do_POST(self) -> None:
         status, answer = self._answer()

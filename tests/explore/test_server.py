@@ -32,7 +32,7 @@ def request(server: Server, method: str, path: str, body: str = "", **headers: s
     return response.status, json.loads(text) if response.headers.get_content_type() == "application/json" else text
 
 
-@pytest.mark.parametrize("path", ["/", "/page.js", "/scene.js", "/plot.js", "/page.css"])
+@pytest.mark.parametrize("path", ["/", "/page.js", "/runs.js", "/page.css"])
 def test_the_page(server: Server, path: str) -> None:
     status, text = request(server, "GET", path)
     assert (status, bool(text)) == (200, True)

@@ -1,25 +1,15 @@
 // The page: a design in hand, what the server says of it, and the two kept in step.
 
 import { ANGLES, Scene } from "./scene.js";
-import { Plot, element } from "./plot.js";
+import { Plot, legend } from "./plot.js";
+import { Runs } from "./runs.js";
+import { ask, download } from "./server.js";
+import { Sliders } from "./sliders.js";
 
 const $ = (id) => document.getElementById(id);
 const copy = (value) => JSON.parse(JSON.stringify(value));
-const DIGITS = { cm: 2, deg: 1, kg: 1, "": 2 };
 const AS_LOADED = "as loaded";
 const DASH = "5 4";
-
-async function ask(name, question = {}) {
-  let response;
-  try {
-    response = await fetch(name, { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(question) });
-  } catch {
-    throw new Error("fes_mj explore has ended; start it again and reload this page");
-  }
-  const answer = await response.json();
-  if (!response.ok) throw new Error(answer.error);
-  return answer;
-}
 
 const start = await ask("start");
 const state = {
@@ -37,21 +27,12 @@ const state = {
 const scene = new Scene($("scene"));
 const powerPlot = new Plot($("power-plot"), (angle) => hold(angle));
 const jointsPlot = new Plot($("joints-plot"), (angle) => hold(angle));
+const sliders = new Sliders($("dimensions"), start.dimensions, (dragging) => { if (!dragging) commit(); refresh(dragging); });
+const runs = new Runs($("runs"), $("verdict"), () => ({ design: state.design, moments: state.moments, legs: legs() }), () => snapshot());
 
 // ---- The design in hand
 
 const legs = () => Number($("legs").value);
-const read = (dimension, design = state.design) => {
-  const value = design[dimension.owner][dimension.symbol];
-  return (dimension.part === null ? value : value[dimension.part]) * dimension.factor;
-};
-
-function write(dimension, shown) {
-  const value = Number((shown / dimension.factor).toPrecision(12)), table = state.design[dimension.owner];
-  if (dimension.part === null) table[dimension.symbol] = value;
-  else table[dimension.symbol][dimension.part] = value;
-  state.design.name = state.loaded.name.replace(/-edited$/, "") + "-edited";
-}
 
 function load(design) {
   if (state.design) remember();
@@ -60,8 +41,7 @@ function load(design) {
   state.design = copy(design);
   state.committed = snapshot();
   if (before && before !== state.committed) state.history.push(before);
-  buildDimensions();
-  refresh();
+  showDesign();
 }
 
 const snapshot = () => JSON.stringify([state.design, state.loaded]);
@@ -77,73 +57,19 @@ function commit() {
   $("undo").disabled = !state.history.length;
 }
 
+function showDesign() {
+  sliders.show(state.design);
+  $("undo").disabled = !state.history.length;
+  $("design").value = state.loaded.name;
+  refresh();
+}
+
 function undo() {
   commit(); // a number that is being typed
   if (!state.history.length) return;
   state.committed = state.history.pop();
   [state.design, state.loaded] = JSON.parse(state.committed);
-  buildDimensions();
-  refresh();
-}
-
-// ---- Sliders
-
-let controls = [];
-
-function buildDimensions() {
-  const kind = state.design.linkage.kind;
-  controls = start.dimensions.filter((each) => each.kinds.includes(kind)).map(control);
-  const group = (words, owner) => {
-    const heading = document.createElement("h2");
-    heading.textContent = words;
-    return [heading, ...controls.filter((each) => each.dimension.owner === owner).map((each) => each.row)];
-  };
-  $("dimensions").replaceChildren(...group("Linkage and seat", "linkage"), ...group("Rider", "rider"));
-  $("undo").disabled = !state.history.length;
-  $("design").value = state.loaded.name;
-}
-
-function control(dimension) {
-  const { name, words, unit, low, high, step } = dimension;
-  const row = document.createElement("div"), label = document.createElement("label"), symbol = document.createElement("b");
-  const slider = document.createElement("input"), number = document.createElement("input"), units = document.createElement("span");
-  row.className = "dimension";
-  row.dataset.name = name;
-  symbol.textContent = dimension.owner === "rider" || name.length > 3 ? "" : `${name} `;
-  label.append(symbol, words);
-  label.htmlFor = `number-${name}`;
-  Object.assign(slider, { type: "range", step: "any" });
-  slider.setAttribute("aria-label", `${name} ${words}`);
-  Object.assign(number, { type: "number", id: label.htmlFor, min: low, max: high, step });
-  number.title = `${+low.toPrecision(4)} to ${+high.toPrecision(4)} ${unit}`;
-  units.textContent = unit;
-  row.append(label, slider, number, units);
-
-  const show = () => {
-    const value = read(dimension);
-    if (!(value >= Number(slider.min) && value <= Number(slider.max))) {
-      slider.min = Math.max(low, value - dimension.reach);
-      slider.max = Math.min(high, value + dimension.reach);
-    }
-    slider.value = value;
-    number.value = value.toFixed(DIGITS[unit]);
-  };
-  slider.addEventListener("input", () => {
-    write(dimension, Math.round(Number(slider.value) / step) * step);
-    number.value = read(dimension).toFixed(DIGITS[unit]);
-    refresh(true);
-  });
-  slider.addEventListener("change", () => { commit(); refresh(); });
-  number.addEventListener("change", () => {
-    const asked = number.valueAsNumber;
-    if (Number.isFinite(asked)) write(dimension, Math.min(high, Math.max(low, asked)));
-    show();
-    commit();
-    refresh();
-  });
-  Object.assign(slider, { min: 0, max: -1 }); // no value is in it
-  show();
-  return { dimension, row };
+  showDesign();
 }
 
 // ---- What the server says of it
@@ -164,7 +90,7 @@ async function refresh(dragging = false) {
     tell(error.message);
   }
   busy = false;
-  if (asked !== state.ran) staleVerdict();
+  if (asked !== runs.of) runs.forget();
   const next = again;
   again = null;
   if (next) refresh(next.dragging);
@@ -191,8 +117,7 @@ function show(dragging) {
   state.failing = failing;
   if (failing && !state.playing) state.angle = Math.round(turn.failing_deg) % ANGLES;
   showNumbers();
-  showPlots();
-  pose();
+  redraw();
 }
 
 function showNumbers() {
@@ -207,7 +132,7 @@ function showNumbers() {
     return row;
   }));
   $("broken").replaceChildren(...broken.map(({ text }) => Object.assign(document.createElement("li"), { textContent: text })));
-  for (const { dimension, row } of controls) row.classList.toggle("outside", marks.has(dimension.name));
+  sliders.mark(marks);
   $("note").textContent = own?.note ? `Note: ${own.note}.` : "";
   $("power").textContent = own ? `${own.numbers[0].text} W` : "no power";
   const change = own && other ? (100 * (own.power_mean_W - other.power_mean_W)) / Math.abs(other.power_mean_W) : NaN;
@@ -218,6 +143,7 @@ function showNumbers() {
 // ---- Curves
 
 let entries = { power: [], joints: [] };
+const redraw = () => { showPlots(); pose(); };
 
 function showPlots() {
   const { turn, reference } = state, curves = [], bands = [];
@@ -235,36 +161,14 @@ function showPlots() {
   if (other) curves.unshift({ name: reference.name, y: other.masses, colour: start.colours.reference, width: 1.2 });
   const visible = curves.filter((curve) => !state.hidden.has(curve.name));
   powerPlot.show({ curves: visible, bands, levels: [{ y: 0, colour: "none" }], shaded: turn.moments?.[state.moments]?.outside ?? [] });
-  entries.power = legend($("power-legend"), curves, "W");
+  entries.power = legend($("power-legend"), curves, "W", state.hidden, redraw);
 
   const range = turn.moments?.[state.moments]?.range_deg;
   const joints = Object.entries(turn.joints ?? {}).map(([name, y]) => ({ name, y, colour: start.colours[name], width: 2 }));
   const levels = range ? joints.flatMap(({ name, colour }) => range[name].map((y) => ({ y, colour, dash: "2 3" }))) : [];
   jointsPlot.show({ curves: joints.filter((curve) => !state.hidden.has(curve.name)), levels });
-  entries.joints = legend($("joints-legend"), joints, "°", range ? [{ name: "range of the moments", dash: "2 3", colour: start.colours.reference, width: 1.2 }] : []);
+  entries.joints = legend($("joints-legend"), joints, "°", state.hidden, redraw, range ? [{ name: "range of the moments", dash: "2 3", colour: start.colours.reference, width: 1.2 }] : []);
   $("of-legs").textContent = turn.legs === 2 ? "(both legs; band: one standard deviation)" : "(one leg; band: one standard deviation)";
-}
-
-function legend(box, curves, unit, fixed = []) {
-  const made = [...curves, ...fixed].map((curve) => {
-    const button = document.createElement("button"), value = document.createElement("b");
-    const sample = element("svg", {}, element("line", { x1: 0, x2: 22, y1: 4, y2: 4, stroke: curve.colour, "stroke-width": curve.width, "stroke-dasharray": curve.dash || "none" }));
-    button.type = "button";
-    button.append(sample, curve.name);
-    if (curve.y) {
-      button.append(value);
-      button.setAttribute("aria-pressed", !state.hidden.has(curve.name));
-      button.title = "Show or hide";
-      button.addEventListener("click", () => {
-        if (!state.hidden.delete(curve.name)) state.hidden.add(curve.name);
-        showPlots();
-        pose();
-      });
-    }
-    return { button, value, y: curve.y, unit };
-  });
-  box.replaceChildren(...made.map((each) => each.button));
-  return made.filter((each) => each.y);
 }
 
 // ---- Motion
@@ -320,14 +224,6 @@ const attempt = (action) => async (...event) => {
   }
 };
 
-function download({ name, text }) {
-  const link = document.createElement("a");
-  link.href = URL.createObjectURL(new Blob([text]));
-  link.download = name;
-  link.click();
-  URL.revokeObjectURL(link.href);
-}
-
 function options(select, names, chosen, words = (name) => name) {
   select.replaceChildren(...names.map((name) => new Option(words(name), name)));
   select.value = chosen;
@@ -355,46 +251,13 @@ async function openMoments(file) {
   tell(answer.warnings.map((text) => `Warning: ${text}`).join(" "));
 }
 
-function staleVerdict() {
-  const box = $("verdict");
-  if (box.childElementCount && !box.dataset.running) box.replaceChildren();
-}
-
-async function run(button) {
-  const box = $("verdict"), buttons = [...$("runs").querySelectorAll("button")], asked = snapshot();
-  const line = document.createElement("p");
-  state.ran = asked;
-  buttons.forEach((each) => (each.disabled = true));
-  line.textContent = `${button.textContent}: ${state.design.name} is running…`;
-  box.dataset.running = true;
-  box.replaceChildren(line);
-  try {
-    const answer = await ask(button.dataset.run, { design: state.design, moments: state.moments, legs: legs() });
-    line.className = answer.agrees ? "good" : "bad";
-    line.textContent = `${asked === snapshot() ? "" : "Of the design as it was: "}${answer.verdict}`;
-    const table = document.createElement("table"), head = table.createTHead().insertRow();
-    for (const text of ["check", "value", "limit", ""]) head.append(Object.assign(document.createElement("th"), { textContent: text }));
-    for (const { name, value, limit, ok } of answer.checks) {
-      const row = table.insertRow();
-      for (const text of [name, value, limit, ok ? "ok" : "FAILED"]) row.insertCell().textContent = text;
-      row.lastChild.className = ok ? "good" : "bad";
-    }
-    box.append(table);
-  } catch (error) {
-    line.className = "bad";
-    line.textContent = error.message;
-  }
-  delete box.dataset.running;
-  buttons.forEach((each) => (each.disabled = false));
-}
-
 $("play").addEventListener("click", () => play(!state.playing));
 $("angle").addEventListener("input", (event) => hold(Number(event.target.value)));
 $("legs").addEventListener("change", () => refresh());
 $("limits").addEventListener("change", showNumbers);
 $("compared").addEventListener("change", () => refresh());
 $("design").addEventListener("change", (event) => load(start.designs[event.target.value]));
-$("moments").addEventListener("change", (event) => { state.moments = event.target.value; staleVerdict(); showNumbers(); showPlots(); pose(); });
+$("moments").addEventListener("change", (event) => { state.moments = event.target.value; runs.forget(); showNumbers(); redraw(); });
 $("undo").addEventListener("click", undo);
 $("reset").addEventListener("click", () => load(state.loaded));
 $("save").addEventListener("click", attempt(async () => download(await ask("save", { design: state.design }))));
@@ -407,7 +270,6 @@ for (const [button, input, action] of [["open", "open-file", openDesign], ["open
     $(input).value = ""; // the same file may be chosen again
   }));
 }
-for (const button of $("runs").querySelectorAll("button")) button.addEventListener("click", () => run(button));
 document.addEventListener("keydown", (event) => {
   if ((event.ctrlKey || event.metaKey) && event.key === "z" && event.target.type !== "number") {
     event.preventDefault();

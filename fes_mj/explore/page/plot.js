@@ -101,3 +101,25 @@ function spans(flags) {
   });
   return found;
 }
+
+// A button for every curve that shows or hides it, and samples of what is `fixed`. Returns where values are written.
+export function legend(box, curves, unit, hidden, onToggle, fixed = []) {
+  const made = [...curves, ...fixed].map((curve) => {
+    const button = document.createElement("button"), value = document.createElement("b");
+    const sample = element("svg", {}, element("line", { x1: 0, x2: 22, y1: 4, y2: 4, stroke: curve.colour, "stroke-width": curve.width, "stroke-dasharray": curve.dash || "none" }));
+    button.type = "button";
+    button.append(sample, curve.name);
+    if (curve.y) {
+      button.append(value);
+      button.setAttribute("aria-pressed", !hidden.has(curve.name));
+      button.title = "Show or hide";
+      button.addEventListener("click", () => {
+        if (!hidden.delete(curve.name)) hidden.add(curve.name);
+        onToggle();
+      });
+    }
+    return { button, value, y: curve.y, unit };
+  });
+  box.replaceChildren(...made.map((each) => each.button));
+  return made.filter((each) => each.y);
+}
