@@ -25,7 +25,8 @@ from fes_mj.torque_velocity import drawn_relations, load_torque_velocity
 from fes_mj.uncertainty import with_sd
 from fes_mj.units import KMH, RPM
 
-DRAWS = 6  # of muscles; a standard deviation of so many is known to a third of itself
+DRAWS = 48  # of muscles; a standard deviation of so many is known to a tenth of itself
+START_DRAWS = 12  # of these, in the search for starts, which takes some thirty times as long as a ride; to a fifth
 ANGLES = 12  # crank angles over half a turn, from which it is tried to start
 SHORT = 20.0  # s: what rides so long from rest goes on
 RATIOS = np.geomspace(0.25, 4.0, 17)  # times the design's own gear ratio
@@ -39,8 +40,8 @@ STEPS = len(DESIGNS) * len(GROUPS)  # how often `study` calls `done`
 class Riding:
     """Of one design, group and transmission: rides with the muscles as they are known best, then with those drawn.
 
-    slope: that balances the mean power of speed-free muscles at 5.71 km/h. gears: by slope, speed at each of RATIOS,
-    m/s, 0 where it stops.
+    slope: that balances the mean power of speed-free muscles at 5.71 km/h. starts: of START_DRAWS of these muscles.
+    gears: by slope, speed at each of RATIOS, m/s, 0 where it stops.
     """
 
     design: Design
@@ -75,7 +76,7 @@ def _riding(design: Design, group: str, muscles: list[JointMoments], transmissio
     level = [Ride(design, each, transmission=transmission) for each in muscles]
     slope = balancing_slope(level[0])
     uphill = [replace(ride, road=Road(slope=slope)) for ride in level]
-    brief = [replace(ride, duration=SHORT) for ride in level]
+    brief = [replace(ride, duration=SHORT) for ride in level[: 1 + START_DRAWS]]
     geared = {each: [_geared(level[0], ratio, each) for ratio in RATIOS] for each in SLOPES}
     with ThreadPoolExecutor(THREADS) as threads:
         return Riding(
@@ -114,7 +115,7 @@ def speed_table(found: list[Riding]) -> Table:
         )
         for each in found
     ]
-    return captioned("riding", rows)
+    return captioned("riding", rows, draws=str(DRAWS))
 
 
 def start_table(found: list[Riding]) -> Table:
@@ -128,7 +129,7 @@ def start_table(found: list[Riding]) -> Table:
         )
         for each in found
     ]
-    return captioned("starts", rows, angles=str(2 * ANGLES))
+    return captioned("starts", rows, angles=str(2 * ANGLES), draws=str(START_DRAWS))
 
 
 def gear_table(found: list[Riding]) -> Table:
