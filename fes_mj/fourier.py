@@ -11,11 +11,13 @@ TERMS = 2 * HARMONICS + 1  # of one joint
 WIDEST_GAP = np.radians(60)  # six samples a turn tell the first harmonics; a wider gap is bridged by a straight line
 _BRIDGE = np.radians(30)  # between the points of such a bridge: closer ones would make the curve ring
 _ORDER = np.concatenate([np.zeros(1), np.tile(np.arange(1, HARMONICS + 1), 2)]) / HARMONICS
-# How much roughness (the mean square of the fourth derivative, in units of the highest harmonic's) weighs against the
-# mean square miss: what the samples determine is not touched, what they leave open is as smooth as can be.
-_ROUGHNESS = 1e-7
+_ROUGHNESS = _ORDER**8  # mean square of the fourth derivative, in units of the highest harmonic's
+# How much roughness may weigh against the mean square miss: from what leaves alone all that samples determine, to what
+# leaves their mean.
+_WEIGHTS = 10.0 ** np.arange(-5, 13)
+_SWING = 0.3  # how far, in their range, curves may swing beyond samples; three harmonics pass twelve by 0.21
 _BLOCK = 20_000  # samples
-_PASSES = 2  # the second takes off what rounding left in the first
+_PASSES = 3  # each takes off what rounding left in the one before
 
 
 def fourier(crank_angle: Any) -> FloatArray:
@@ -31,22 +33,49 @@ def fit(angle: FloatArray, values: FloatArray) -> FloatArray:
     """Coefficients, shape (TERMS, curves), of the smooth periodic curves through samples, or among noisy dense ones.
 
     angle: rad, shape (n,), in any order and by any whole turns. values: shape (n, curves). Least squares in which all
-    samples weigh the same; gaps wider than WIDEST_GAP are bridged by straight lines.
+    samples weigh the same and roughness weighs as samples left out would have it (_smoothed); gaps wider than
+    WIDEST_GAP are bridged by straight lines.
     """
     bridge = _bridges(angle, values)
     angle, values = np.concatenate([angle, bridge[0]]), np.concatenate([values, bridge[1]])
     blocks = [slice(start, start + _BLOCK) for start in range(0, len(angle), _BLOCK)]  # a day of samples fits in memory
-    roughness, found = np.diag(_ROUGHNESS * _ORDER**8), np.zeros((TERMS, values.shape[1]))
+    roughness, found = np.diag(_WEIGHTS[0] * _ROUGHNESS), np.zeros((TERMS, values.shape[1]))
     # einsum, not BLAS, whose threads would make the last bits depend on how many there are
     normal = sum(np.einsum("ij,ik->jk", terms, terms) for terms in (fourier(angle[block]) for block in blocks))
-    normal = normal / len(angle) + roughness
+    normal = normal / len(angle)
     for _ in range(_PASSES):
-        missed = -roughness @ found
+        missed, square = -roughness @ found, np.zeros(values.shape[1])
         for block in blocks:
             terms = fourier(angle[block])
             miss = values[block] - np.einsum("ij,jk->ik", terms, found)
             missed += np.einsum("ij,ik->jk", terms, miss) / len(angle)
-        found += np.linalg.solve(normal, missed)
+            square += np.einsum("ik,ik->k", miss, miss) / len(angle)
+        found += np.linalg.solve(normal + roughness, missed)
+    return _smoothed(found, square, normal, values)
+
+
+def _smoothed(closest: FloatArray, square: FloatArray, normal: FloatArray, values: FloatArray) -> FloatArray:
+    """Of each curve the weight of roughness that generalised cross-validation prefers (Craven and Wahba 1979).
+
+    Cross-validation cannot tell noise from shape where samples are fewer than terms; so only curves count that do not
+    swing far beyond the samples. closest: with the least weight; square: its mean square miss.
+    """
+    count, turn = len(values), fourier(np.radians(np.arange(360)))
+    low, high = values.min(axis=0), values.max(axis=0)
+    margin = _SWING * (high - low) + 1e-9 * np.abs(values).max(axis=0)  # rounding, where all samples are the same
+    found, least = closest.copy(), np.full(len(square), np.inf)
+    for weight in _WEIGHTS:
+        inverse = np.linalg.inv(normal + np.diag(weight * _ROUGHNESS))
+        change = -inverse @ ((weight - _WEIGHTS[0]) * _ROUGHNESS[:, None] * closest)
+        # the miss of the sum, without the difference of large numbers
+        pull = 2 * _WEIGHTS[0] * _ROUGHNESS[:, None] * closest + normal @ change
+        miss = square + np.einsum("ik,ik->k", change, pull)
+        free = max(1 - np.trace(inverse @ normal) / count, 1e-9)  # share of the samples that is left to judge by
+        score = miss / free**2
+        curves = turn @ (closest + change)
+        inside = np.all((curves >= low - margin) & (curves <= high + margin), axis=0)
+        better = inside & (score < least)
+        found[:, better], least[better] = (closest + change)[:, better], score[better]
     return found
 
 
