@@ -13,7 +13,7 @@ _BRIDGE = np.radians(30)  # between the points of such a bridge: closer ones wou
 _ORDER = np.concatenate([np.zeros(1), np.tile(np.arange(1, HARMONICS + 1), 2)]) / HARMONICS
 _ROUGHNESS = _ORDER**8  # mean square of the fourth derivative, in units of the highest harmonic's
 # How much roughness may weigh against the mean square miss: from what leaves alone all that samples determine, to what
-# leaves their mean.
+# leaves hardly more than their mean.
 _WEIGHTS = 10.0 ** np.arange(-5, 13)
 _SWING = 0.3  # how far, in their range, curves may swing beyond samples; three harmonics pass twelve by 0.21
 _BLOCK = 20_000  # samples
@@ -63,19 +63,19 @@ def _smoothed(closest: FloatArray, square: FloatArray, normal: FloatArray, value
     count, turn = len(values), fourier(np.radians(np.arange(360)))
     low, high = values.min(axis=0), values.max(axis=0)
     margin = _SWING * (high - low) + 1e-9 * np.abs(values).max(axis=0)  # rounding, where all samples are the same
-    found, least = closest.copy(), np.full(len(square), np.inf)
+    lightest, rough = _WEIGHTS[0], _ROUGHNESS[:, None] * closest
+    found, least = closest, np.full(len(square), np.inf)
     for weight in _WEIGHTS:
         inverse = np.linalg.inv(normal + np.diag(weight * _ROUGHNESS))
-        change = -inverse @ ((weight - _WEIGHTS[0]) * _ROUGHNESS[:, None] * closest)
-        # the miss of the sum, without the difference of large numbers
-        pull = 2 * _WEIGHTS[0] * _ROUGHNESS[:, None] * closest + normal @ change
-        miss = square + np.einsum("ik,ik->k", change, pull)
+        change = (lightest - weight) * (inverse @ rough)
+        # the miss after the change, without the difference of large numbers
+        miss = square + np.sum(change * (2 * lightest * rough + normal @ change), axis=0)
         free = max(1 - np.trace(inverse @ normal) / count, 1e-9)  # share of the samples that is left to judge by
-        score = miss / free**2
-        curves = turn @ (closest + change)
+        score, tried = miss / free**2, closest + change
+        curves = turn @ tried
         inside = np.all((curves >= low - margin) & (curves <= high + margin), axis=0)
         better = inside & (score < least)
-        found[:, better], least[better] = (closest + change)[:, better], score[better]
+        found, least = np.where(better, tried, found), np.where(better, score, least)
     return found
 
 
