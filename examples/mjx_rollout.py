@@ -18,7 +18,7 @@ import numpy as np
 from mujoco import mjx
 
 from fes_mj import load_design, load_moments
-from fes_mj.drive import POINTS, drive
+from fes_mj.moments.drive import POINTS, drive
 from fes_mj.simulation.variants import variant_model, variant_options
 
 COPIES, DURATION = 64, 2.0  # s

@@ -15,12 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fes_mj import load_design, load_moments
-from fes_mj.drive import commanded
-from fes_mj.joints import JOINTS
+from fes_mj.linkage.joints import JOINTS
+from fes_mj.moments.drive import commanded
+from fes_mj.moments.torque_map import torque_map
+from fes_mj.moments.torque_velocity import load_torque_velocity
+from fes_mj.riding.stimulation import MUSCLES, Window, stimulation
 from fes_mj.simulation.variants import variant_model, variant_options
-from fes_mj.stimulation import MUSCLES, Window, stimulation
-from fes_mj.torque_map import torque_map
-from fes_mj.torque_velocity import load_torque_velocity
 
 CHANNELS = [(leg, name) for leg in ("right", "left") for name in MUSCLES]  # of the stimulator
 PERIOD = 0.02  # s between two actions: a stimulator's 50 Hz

@@ -9,8 +9,8 @@ import pytest
 from hypothesis import settings
 
 import fes_mj
-from fes_mj.design_file import DESIGNS
-from fes_mj.moments import GROUPS
+from fes_mj.linkage.design_file import DESIGNS
+from fes_mj.moments.joint_moments import GROUPS
 from fes_mj.sweep.sweep import Sweep
 
 # Tests that run in the background or under nohup ignore these; the processes that they start must not.

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 from hypothesis import strategies as st
 
-from fes_mj.design import ARCHITECTURES, Design
-from fes_mj.moments import JointMoments
+from fes_mj.linkage.design import ARCHITECTURES, Design
+from fes_mj.moments.joint_moments import JointMoments
 from tools.random_linkages import random_design, random_moments
 
 MARGIN = 0.02  # m, that every dyad stays away from its dead centres

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from fes_mj.cli.app import run
-from fes_mj.design_file import load_design
+from fes_mj.linkage.design_file import load_design
 from fes_mj.simulation.variants import VARIANTS
 
 ROOT = Path(__file__).parents[1]

@@ -12,8 +12,8 @@ import pytest
 
 from fes_mj import load_design, load_moments
 from fes_mj.cli.app import run
-from fes_mj.design_file import DESIGNS
-from fes_mj.statics import quasi_static
+from fes_mj.linkage.design_file import DESIGNS
+from fes_mj.statics.turn import quasi_static
 
 ROOT = Path(__file__).parents[1]
 EXAMPLES = ROOT / "examples"

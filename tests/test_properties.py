@@ -8,16 +8,17 @@ import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
 
-from fes_mj import kinematics, load_design, load_moments, quasi_static
-from fes_mj.crosscheck import Case
-from fes_mj.design import Design, Linkage
-from fes_mj.design_file import design_toml
-from fes_mj.inverse_dynamics import crank_moment
-from fes_mj.joints import JOINTS
-from fes_mj.loads import body_loads
-from fes_mj.moments import COLUMNS, JointMoments
-from fes_mj.statics import equilibrium, virtual_work
-from fes_mj.torque_map import torque_map
+from fes_mj import load_design, load_moments, quasi_static
+from fes_mj.crosscheck.turn_case import Case
+from fes_mj.linkage import kinematics
+from fes_mj.linkage.design import Design, Linkage
+from fes_mj.linkage.design_file import design_toml
+from fes_mj.linkage.joints import JOINTS
+from fes_mj.linkage.loads import body_loads
+from fes_mj.moments.joint_moments import COLUMNS, JointMoments
+from fes_mj.moments.torque_map import torque_map
+from fes_mj.statics.inverse_dynamics import crank_moment
+from fes_mj.statics.turn import equilibrium, virtual_work
 from fes_mj.verification.geometry import closure_error, wrong_branch
 from fes_mj.verification.references import differences, exact_curves
 from tests.linkages import between, designs, periodic_moments

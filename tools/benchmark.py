@@ -12,18 +12,19 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from fes_mj.console import print_table
-from fes_mj.design import ONE_LEG, Design
-from fes_mj.design_file import load_design
-from fes_mj.files import json_text, write_text
-from fes_mj.kinematics import positions
-from fes_mj.moments_file import load_moments
-from fes_mj.provenance import provenance
+from fes_mj.common.console import print_table
+from fes_mj.common.provenance import provenance
+from fes_mj.common.writing import json_text, write_text
+from fes_mj.linkage.design import Design
+from fes_mj.linkage.design_file import load_design
+from fes_mj.linkage.kinematics import positions
+from fes_mj.linkage.legs import ONE_LEG
+from fes_mj.moments.files import load_moments
+from fes_mj.moments.torque_map import torque_map
 from fes_mj.simulation.bench import joint_drives
 from fes_mj.simulation.mjcf import build_mjcf
 from fes_mj.simulation.stepping import feedback_loop, run_loop
-from fes_mj.time_step import steps_per_turn
-from fes_mj.torque_map import torque_map
+from fes_mj.simulation.time_step import steps_per_turn
 
 ANGLES = np.linspace(0, 2 * np.pi, 360, endpoint=False)
 ROUNDS = 15  # of all candidates in turn; medians and ratios are over rounds

@@ -21,17 +21,17 @@ import exudyn as exu  # noqa: E402
 from exudyn import itemInterface as items  # noqa: E402, N813
 
 import fes_mj  # noqa: E402
-from fes_mj.console import print_table  # noqa: E402
-from fes_mj.files import json_text, write_text  # noqa: E402
-from fes_mj.inverse_dynamics import crank_moment  # noqa: E402
-from fes_mj.kinematics import solve  # noqa: E402
-from fes_mj.provenance import provenance  # noqa: E402
-from fes_mj.segments import GRAVITY, inertias  # noqa: E402
+from fes_mj.common.console import print_table  # noqa: E402
+from fes_mj.common.provenance import provenance  # noqa: E402
+from fes_mj.common.writing import json_text, write_text  # noqa: E402
+from fes_mj.linkage.kinematics import solve  # noqa: E402
+from fes_mj.linkage.segments import GRAVITY, inertias  # noqa: E402
+from fes_mj.moments.torque_map import torque_map  # noqa: E402
 from fes_mj.simulation.compiled import compiled_loop  # noqa: E402
 from fes_mj.simulation.mjcf import build_mjcf  # noqa: E402
 from fes_mj.simulation.sensors import Sensors  # noqa: E402
 from fes_mj.simulation.stepping import PRE_ROLL, feedback_loop, run_loop  # noqa: E402
-from fes_mj.torque_map import torque_map  # noqa: E402
+from fes_mj.statics.inverse_dynamics import crank_moment  # noqa: E402
 
 DESIGNS, ASKED, REPETITIONS = ("d1", "r2"), 0.005, 15  # W rms
 STEPS, MOMENTS = [round(200 * 2 ** (k / 8)) for k in range(33)], fes_mj.load_moments("p1p2")  # a turn

@@ -18,24 +18,25 @@ import numpy as np
 from mujoco import rollout
 from scipy.optimize import fsolve
 
-from fes_mj.console import print_table
-from fes_mj.cycles import TURN_POINTS, WorkTable, cycles, joint_speeds
-from fes_mj.design import ONE_LEG, Design
-from fes_mj.design_file import load_design
-from fes_mj.files import json_text, write_text
-from fes_mj.moments_file import load_moments
+from fes_mj.common.console import print_table
+from fes_mj.common.provenance import provenance
+from fes_mj.common.writing import json_text, write_text
+from fes_mj.linkage.design import Design
+from fes_mj.linkage.design_file import load_design
+from fes_mj.linkage.legs import ONE_LEG
+from fes_mj.linkage.variables import lengths, with_lengths
+from fes_mj.moments.files import load_moments
+from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
+from fes_mj.moments.torque_map import torque_map
 from fes_mj.optimization.people import sampled
 from fes_mj.optimization.problem import Problem
 from fes_mj.optimization.problem_file import load_limits
 from fes_mj.optimization.ripple import RippleLimit
-from fes_mj.provenance import provenance
-from fes_mj.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.simulation.bench import joint_drives, simulate
 from fes_mj.simulation.compiled import compiled_loop
 from fes_mj.simulation.mjcf import build_mjcf
-from fes_mj.time_step import steps_per_turn
-from fes_mj.torque_map import torque_map
-from fes_mj.variables import lengths, with_lengths
+from fes_mj.simulation.time_step import steps_per_turn
+from fes_mj.statics.cycles import TURN_POINTS, WorkTable, cycles, joint_speeds
 from tools.benchmark import pylinkage_six_bar, rates
 
 DESIGNS, TURNS, THREADS = 2000, 16, 2
@@ -55,7 +56,7 @@ class ByHand:
     """
 
     def __init__(self, design: Design) -> None:
-        from fes_mj import kinematics
+        from fes_mj.linkage import kinematics
 
         self.design = design
         crank_angle = np.radians(np.arange(360.0))

@@ -8,17 +8,17 @@ from pathlib import Path
 import mujoco
 import numpy as np
 
-from fes_mj import reduced
-from fes_mj.console import print_table
-from fes_mj.design_file import load_design
-from fes_mj.files import json_text, write_text
-from fes_mj.moments_file import load_moments
-from fes_mj.provenance import provenance
-from fes_mj.ride import Ride
+from fes_mj.common.console import print_table
+from fes_mj.common.provenance import provenance
+from fes_mj.common.writing import json_text, write_text
+from fes_mj.linkage.design_file import load_design
+from fes_mj.moments.files import load_moments
+from fes_mj.moments.torque_velocity import load_torque_velocity
+from fes_mj.riding import reduced
+from fes_mj.riding.ride import Ride
 from fes_mj.simulation.road import ride_on_road
 from fes_mj.simulation.road_control import compiled_road_loop
 from fes_mj.simulation.road_mjcf import TIMESTEP, build_road_mjcf
-from fes_mj.torque_velocity import load_torque_velocity
 from tools import benchmark
 
 DURATION = 60.0  # s of riding

@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from fes_mj.console import print_table
-from fes_mj.files import json_text, write_text
-from fes_mj.provenance import provenance
+from fes_mj.common.console import print_table
+from fes_mj.common.provenance import provenance
+from fes_mj.common.writing import json_text, write_text
 
 ROUNDS = 15
 PYTHON, COMMAND = sys.executable, str(Path(sys.executable).with_name("fes_mj"))

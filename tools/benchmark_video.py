@@ -13,14 +13,14 @@ import mediapy
 import mujoco
 import numpy as np
 
-from fes_mj.arrays import Picture
-from fes_mj.console import print_table
-from fes_mj.crosscheck import Case
-from fes_mj.design import LEGS
-from fes_mj.design_file import load_design
-from fes_mj.files import json_text, write_text
-from fes_mj.moments_file import load_moments
-from fes_mj.provenance import provenance
+from fes_mj.common.arrays import Picture
+from fes_mj.common.console import print_table
+from fes_mj.common.provenance import provenance
+from fes_mj.common.writing import json_text, write_text
+from fes_mj.crosscheck.turn_case import Case
+from fes_mj.linkage.design_file import load_design
+from fes_mj.linkage.legs import LEGS
+from fes_mj.moments.files import load_moments
 from fes_mj.simulation.mjcf import build_mjcf
 from fes_mj.viewing import render
 from fes_mj.viewing.power_panel import PowerPanel

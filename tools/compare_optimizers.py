@@ -10,11 +10,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from fes_mj.cycles import WorkTable, joint_speeds, uncertain_table
-from fes_mj.design_file import design_toml, load_design
-from fes_mj.files import json_text, write_text
-from fes_mj.moments import GROUPS
-from fes_mj.moments_file import load_moments
+from fes_mj.common.parallel import Workers
+from fes_mj.common.provenance import provenance
+from fes_mj.common.writing import json_text, write_text
+from fes_mj.linkage.design_file import design_toml, load_design
+from fes_mj.moments.files import load_moments
+from fes_mj.moments.joint_moments import GROUPS
 from fes_mj.optimization.confidence import gain
 from fes_mj.optimization.optimize import optimize
 from fes_mj.optimization.pareto import pareto_front
@@ -22,8 +23,7 @@ from fes_mj.optimization.problem import Problem
 from fes_mj.optimization.problem_file import DEFAULT, load_limits
 from fes_mj.optimization.search import Result
 from fes_mj.optimization.winner import Winner, assess
-from fes_mj.parallel import Workers
-from fes_mj.provenance import provenance
+from fes_mj.statics.cycles import WorkTable, joint_speeds, uncertain_table
 
 FOLDER = Path("results/optimization")
 SEEDS, BUDGET, WORKERS = 5, 50_000, Workers(jobs=2)

@@ -8,13 +8,14 @@ from typing import Any
 import numpy as np
 
 from fes_mj.budget.unknowns import DIMENSIONS, prior
-from fes_mj.design_file import design_toml, load_design
-from fes_mj.files import replacing, write_text
-from fes_mj.geometry import joint_ranges
+from fes_mj.common.reading import DATA
+from fes_mj.common.writing import replacing, write_text
+from fes_mj.linkage.assembly import joint_ranges
+from fes_mj.linkage.design_file import design_toml, load_design
+from fes_mj.linkage.variables import LENGTHS, VARIABLES
+from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.paper.identification import LENGTH_ROUNDING, identify, inside_rounding, rounded
-from fes_mj.paper.printed import DATA, SIX_BARS, table1
-from fes_mj.reference_tricycle import PAPER_TRICYCLE
-from fes_mj.variables import LENGTHS, VARIABLES
+from fes_mj.paper.printed import SIX_BARS, table1
 
 FOLDER = DATA / "designs" / "identified"
 DRAWS = 1000

@@ -10,16 +10,16 @@ import sys
 from pathlib import Path
 from string import Template
 
-from fes_mj.design import Design
-from fes_mj.design_file import DESIGNS, load_design
-from fes_mj.files import replacing, write_text
-from fes_mj.moments import JointMoments
-from fes_mj.moments_file import load_moments
+from fes_mj.common.units import RPM
+from fes_mj.common.writing import replacing, write_text
+from fes_mj.linkage.design import Design
+from fes_mj.linkage.design_file import DESIGNS, load_design
+from fes_mj.moments.files import load_moments
+from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.simulation.export import mjcf_text, scene_text, sidecar_text
 from fes_mj.simulation.mjcf import build_mjcf
 from fes_mj.simulation.variants import variant_model, variant_options
-from fes_mj.statics import quasi_static
-from fes_mj.units import RPM
+from fes_mj.statics.turn import quasi_static
 
 TOOLS = Path(__file__).parent
 FOLDER = TOOLS.parent / "mjcf"

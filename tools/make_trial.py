@@ -9,12 +9,12 @@ from pathlib import Path
 
 import numpy as np
 
-from fes_mj import kinematics
-from fes_mj.arrays import FloatArray, IntArray
-from fes_mj.files import write_files
-from fes_mj.joints import PerJoint
-from fes_mj.measurement_file import Description
-from fes_mj.reference_tricycle import ReferenceTricycle
+from fes_mj.common.arrays import FloatArray, IntArray
+from fes_mj.common.writing import write_files
+from fes_mj.linkage import kinematics
+from fes_mj.linkage.joints import PerJoint
+from fes_mj.moments.measurement_file import Description
+from fes_mj.moments.reference_tricycle import ReferenceTricycle
 
 FOLDER = Path(__file__).parents[1] / "examples" / "trial"
 RATE = 50.0  # samples a second

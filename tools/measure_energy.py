@@ -15,17 +15,17 @@ from typing import Any, NamedTuple
 import mujoco
 import numpy as np
 
-from fes_mj.console import track
-from fes_mj.design_file import DESIGNS, load_design
-from fes_mj.files import json_text, write_text
-from fes_mj.moments_file import load_moments
-from fes_mj.provenance import provenance
+from fes_mj.common.console import track
+from fes_mj.common.markdown import Table
+from fes_mj.common.provenance import provenance
+from fes_mj.common.units import RPM
+from fes_mj.common.writing import json_text, write_text
+from fes_mj.linkage.design_file import DESIGNS, load_design
+from fes_mj.moments.files import load_moments
 from fes_mj.simulation.mjcf import INTEGRATORS
 from fes_mj.simulation.stepping import energy
+from fes_mj.simulation.time_step import steps_per_turn
 from fes_mj.simulation.variants import variant_model, variant_options
-from fes_mj.table import Table
-from fes_mj.time_step import steps_per_turn
-from fes_mj.units import RPM
 
 RESULTS = Path(__file__).parents[1] / "results"
 DURATION = 5.0  # s

@@ -17,23 +17,23 @@ import mujoco
 import numpy as np
 
 import fes_mj
-from fes_mj.arrays import FloatArray
-from fes_mj.console import track
-from fes_mj.crosscheck import Case
-from fes_mj.design import BODIES, Design
-from fes_mj.design_file import DESIGNS
-from fes_mj.files import write_text
-from fes_mj.kinematics import Motion
-from fes_mj.moments import JointMoments
-from fes_mj.segments import inertias
+from fes_mj.common.arrays import FloatArray
+from fes_mj.common.console import track
+from fes_mj.common.markdown import Table
+from fes_mj.common.units import RPM
+from fes_mj.common.writing import write_text
+from fes_mj.crosscheck.turn_case import Case
+from fes_mj.linkage.design import BODIES, Design
+from fes_mj.linkage.design_file import DESIGNS
+from fes_mj.linkage.kinematics import Motion
+from fes_mj.linkage.segments import inertias
+from fes_mj.moments.joint_moments import JointMoments
+from fes_mj.moments.torque_map import TorqueMap
 from fes_mj.simulation import mjcf, stepping
 from fes_mj.simulation.bench import Simulation
+from fes_mj.simulation.step_error import predicted_errors
 from fes_mj.simulation.stepping import FORCE_EVERY, Loop, drive_addresses
-from fes_mj.statics import quasi_static
-from fes_mj.step_error import predicted_errors
-from fes_mj.table import Table
-from fes_mj.torque_map import TorqueMap
-from fes_mj.units import RPM
+from fes_mj.statics.turn import quasi_static
 
 ROOT = Path(__file__).parents[1]
 SLOW = 1.0  # rpm

@@ -9,23 +9,23 @@ from typing import Any
 
 import numpy as np
 
-from fes_mj.cycles import WorkTable, cycles, joint_speeds
-from fes_mj.design import Design, Rider
-from fes_mj.design_file import design_toml, load_design
-from fes_mj.files import json_text, write_text
-from fes_mj.fit import Seats, best_seats, fit, seat_text
-from fes_mj.joints import PerJoint
-from fes_mj.moments_file import load_moments
+from fes_mj.common.markdown import Table
+from fes_mj.common.parallel import Workers
+from fes_mj.common.provenance import provenance
+from fes_mj.common.writing import json_text, write_text
+from fes_mj.fit.population import study_population
+from fes_mj.fit.seat import Seats, best_seats, fit, seat_text
+from fes_mj.linkage.design import Design, Rider
+from fes_mj.linkage.design_file import design_toml, load_design
+from fes_mj.linkage.joints import PerJoint
+from fes_mj.linkage.variables import COMPONENTS, component
+from fes_mj.moments.files import load_moments
 from fes_mj.optimization.optimize import optimize
 from fes_mj.optimization.people import sampled
 from fes_mj.optimization.problem import Problem
 from fes_mj.optimization.problem_file import DEFAULT, load_limits
 from fes_mj.optimization.winner import Winner, assess
-from fes_mj.parallel import Workers
-from fes_mj.population import study_population
-from fes_mj.provenance import provenance
-from fes_mj.table import Table
-from fes_mj.variables import COMPONENTS, component
+from fes_mj.statics.cycles import WorkTable, cycles, joint_speeds
 
 FOLDER = Path("results/optimization")
 MOMENTS = load_moments("p1p2")

@@ -4,11 +4,11 @@ from pathlib import Path
 
 import numpy as np
 
-from fes_mj.arrays import Picture
-from fes_mj.crosscheck import Case
-from fes_mj.design_file import load_design
-from fes_mj.files import replacing
-from fes_mj.moments_file import load_moments
+from fes_mj.common.arrays import Picture
+from fes_mj.common.writing import replacing
+from fes_mj.crosscheck.turn_case import Case
+from fes_mj.linkage.design_file import load_design
+from fes_mj.moments.files import load_moments
 from fes_mj.viewing import render
 
 PICTURE = Path(__file__).parents[1] / "docs" / "images" / "d1.png"

@@ -10,23 +10,23 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from fes_mj.design import Design
-from fes_mj.design_file import design_toml, load_design
-from fes_mj.files import json_text, write_text
-from fes_mj.moments_file import load_moments
+from fes_mj.common.markdown import Table
+from fes_mj.common.parallel import Workers
+from fes_mj.common.provenance import provenance
+from fes_mj.common.style import COLOURS, STYLE
+from fes_mj.common.units import KMH
+from fes_mj.common.writing import json_text, write_text
+from fes_mj.crosscheck.ride_case import RideCase
+from fes_mj.linkage.design import Design
+from fes_mj.linkage.design_file import design_toml, load_design
+from fes_mj.moments.files import load_moments
 from fes_mj.optimization.optimize import optimize
 from fes_mj.optimization.problem import Problem
 from fes_mj.optimization.problem_file import DEFAULT
 from fes_mj.optimization.ripple import RippleLimit
 from fes_mj.optimization.winner import assess
-from fes_mj.parallel import Workers
-from fes_mj.provenance import provenance
-from fes_mj.reduced import steady_ripple
-from fes_mj.ride import Ride, balancing_slope
-from fes_mj.ride_case import RideCase
-from fes_mj.style import COLOURS, STYLE
-from fes_mj.table import Table
-from fes_mj.units import KMH
+from fes_mj.riding.reduced import steady_ripple
+from fes_mj.riding.ride import Ride, balancing_slope
 from tools.compare_optimizers import problem
 
 FOLDER = Path("results/optimization")

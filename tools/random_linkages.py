@@ -6,12 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from fes_mj import kinematics
-from fes_mj.design import ARCHITECTURES, Design, Linkage, Rider
-from fes_mj.errors import InputError
-from fes_mj.extrapolation import require_motion
-from fes_mj.moments import JointMoments
-from fes_mj.reference_tricycle import PAPER_TRICYCLE
+from fes_mj.common.errors import InputError
+from fes_mj.linkage import kinematics
+from fes_mj.linkage.design import ARCHITECTURES, Design, Linkage, Rider
+from fes_mj.moments.joint_moments import JointMoments
+from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
+from fes_mj.statics.extrapolation import require_motion
 
 NEAREST, FARTHEST = 1.5e-4, 0.03  # m from the nearest dead centre
 FINE = np.linspace(0, 2 * np.pi, 7200, endpoint=False)

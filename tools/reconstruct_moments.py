@@ -8,12 +8,12 @@ from pathlib import Path
 
 import numpy as np
 
-from fes_mj.arrays import FloatArray
-from fes_mj.files import replacing, write_text
-from fes_mj.moment_samples import moments_of
-from fes_mj.moments import COLUMNS
+from fes_mj.common.arrays import FloatArray
+from fes_mj.common.reading import DATA
+from fes_mj.common.writing import replacing, write_text
+from fes_mj.moments.joint_moments import COLUMNS
+from fes_mj.moments.samples import moments_of
 from fes_mj.paper.evidence import load_evidence, of_group
-from fes_mj.paper.printed import DATA
 from fes_mj.paper.reconstruction import reconstruct
 from fes_mj.paper.statements import told
 

@@ -14,13 +14,13 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
-from fes_mj.console import track
-from fes_mj.design_file import DESIGNS
-from fes_mj.files import json_text, replacing, write_text
-from fes_mj.provenance import provenance
-from fes_mj.style import FAINT, SERIES, STYLE
-from fes_mj.table import Table
-from fes_mj.units import KMH
+from fes_mj.common.console import track
+from fes_mj.common.markdown import Table
+from fes_mj.common.provenance import provenance
+from fes_mj.common.style import FAINT, SERIES, STYLE
+from fes_mj.common.units import KMH
+from fes_mj.common.writing import json_text, replacing, write_text
+from fes_mj.linkage.design_file import DESIGNS
 
 ROOT = Path(__file__).parents[1]
 RESULTS = ROOT / "results"

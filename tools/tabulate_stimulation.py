@@ -8,11 +8,11 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
-from fes_mj.design_file import DESIGNS, load_design
-from fes_mj.files import write_text
-from fes_mj.stimulation import CORE, LEAST_SHARE, stimulation
-from fes_mj.table import Table
-from fes_mj.units import RPM
+from fes_mj.common.markdown import Table
+from fes_mj.common.units import RPM
+from fes_mj.common.writing import write_text
+from fes_mj.linkage.design_file import DESIGNS, load_design
+from fes_mj.riding.stimulation import CORE, LEAST_SHARE, stimulation
 
 PATH = Path(__file__).parents[1] / "results" / "stimulation.md"
 LAGS = (0.06, 0.15)  # s, the span of what cycles in use advance by

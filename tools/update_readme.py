@@ -2,14 +2,14 @@
 
 from pathlib import Path
 
-from fes_mj.crosscheck import Case
-from fes_mj.design_file import DESIGNS, load_design
-from fes_mj.files import write_text
-from fes_mj.moments import GROUPS
-from fes_mj.moments_file import load_moments
+from fes_mj.common.markdown import Table
+from fes_mj.common.units import RPM
+from fes_mj.common.writing import write_text
+from fes_mj.crosscheck.turn_case import Case
+from fes_mj.linkage.design_file import DESIGNS, load_design
+from fes_mj.moments.files import load_moments
+from fes_mj.moments.joint_moments import GROUPS
 from fes_mj.paper.printed import table1
-from fes_mj.table import Table
-from fes_mj.units import RPM
 
 README = Path(__file__).parents[1] / "README.md"
 START, END = "<!-- ten runs: written by tools/update_readme.py -->\n", "<!-- end of ten runs -->\n"

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from fes_mj.cli.app import run
-from fes_mj.files import write_text
-from fes_mj.table import Table
+from fes_mj.common.markdown import Table
+from fes_mj.common.writing import write_text
 from fes_mj.verification.problems import compare_chains, run_four_bar
 
 FOLDER = Path("results")

@@ -11,16 +11,16 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from fes_mj.checks import Check
-from fes_mj.console import track
-from fes_mj.design_file import DESIGNS, load_design
-from fes_mj.files import write_text
-from fes_mj.moments import GROUPS
-from fes_mj.moments_file import load_moments
-from fes_mj.ride import TRANSMISSIONS, Ride, balancing_slope
-from fes_mj.ride_case import RideCase
-from fes_mj.table import Table
-from fes_mj.torque_velocity import load_torque_velocity
+from fes_mj.common.checks import Check
+from fes_mj.common.console import track
+from fes_mj.common.markdown import Table
+from fes_mj.common.writing import write_text
+from fes_mj.crosscheck.ride_case import RideCase
+from fes_mj.linkage.design_file import DESIGNS, load_design
+from fes_mj.moments.files import load_moments
+from fes_mj.moments.joint_moments import GROUPS
+from fes_mj.moments.torque_velocity import load_torque_velocity
+from fes_mj.riding.ride import TRANSMISSIONS, Ride, balancing_slope
 
 ROOT = Path(__file__).parents[1]
 

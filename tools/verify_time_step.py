@@ -1,4 +1,4 @@
-"""Does the rule of fes_mj.time_step hold? Every cross-check at the number of steps it chooses, over many linkages.
+"""Does the rule of simulation.time_step hold? Every cross-check at the number of steps it chooses, over many linkages.
 
     python -m tools.verify_time_step [--random 200] [--seed 1] [--out results/time_step.md]
 
@@ -18,16 +18,16 @@ from pathlib import Path
 import numpy as np
 
 import fes_mj
-from fes_mj.checks import Check
-from fes_mj.console import track
-from fes_mj.crosscheck import Case
-from fes_mj.design import Design
-from fes_mj.design_file import DESIGNS
-from fes_mj.files import write_text
-from fes_mj.step_error import predicted_errors
-from fes_mj.table import Table
-from fes_mj.time_step import SHARE, TRIAL, steps_per_turn
-from fes_mj.units import RPM
+from fes_mj.common.checks import Check
+from fes_mj.common.console import track
+from fes_mj.common.markdown import Table
+from fes_mj.common.units import RPM
+from fes_mj.common.writing import write_text
+from fes_mj.crosscheck.turn_case import Case
+from fes_mj.linkage.design import Design
+from fes_mj.linkage.design_file import DESIGNS
+from fes_mj.simulation.step_error import predicted_errors
+from fes_mj.simulation.time_step import SHARE, TRIAL, steps_per_turn
 from tools.random_linkages import random_design, random_moments
 
 ROOT = Path(__file__).parents[1]

@@ -7,11 +7,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from fes_mj.arrays import FloatArray, IntArray
 from fes_mj.budget.power import Rows, UncertainPower
 from fes_mj.budget.unknowns import EXTRAPOLATION, LAG, MASSES, MOMENTS, SPEED, priors
-from fes_mj.statics import QuasiStatic
-from fes_mj.uncertainty import standard_deviation, with_sd
+from fes_mj.common.arrays import FloatArray, IntArray
+from fes_mj.moments.uncertainty import standard_deviation, with_sd
+from fes_mj.statics.turn import QuasiStatic
 
 DRAWS = 256  # of a single command: a standard deviation is known to 4 % of itself, in 0.2 s
 _SEED = 2007

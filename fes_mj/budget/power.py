@@ -6,9 +6,6 @@ from functools import cached_property
 
 import numpy as np
 
-from fes_mj import kinematics
-from fes_mj.arrays import BoolArray, FloatArray, IntArray
-from fes_mj.batch import batch_size
 from fes_mj.budget.unknowns import (
     DIMENSIONS,
     EXTRAPOLATION,
@@ -20,15 +17,18 @@ from fes_mj.budget.unknowns import (
     Realisations,
     realisations,
 )
-from fes_mj.design import Design
-from fes_mj.drive import commanded
-from fes_mj.extrapolation import zone_powers
-from fes_mj.fourier import HARMONICS
-from fes_mj.geometry import SCAN, obstacles, span_limits
-from fes_mj.joints import JOINTS
-from fes_mj.kinematics import Motion
-from fes_mj.statics import QuasiStatic
-from fes_mj.variables import replaced
+from fes_mj.common.arrays import BoolArray, FloatArray, IntArray
+from fes_mj.linkage import kinematics
+from fes_mj.linkage.assembly import SCAN, obstacles, span_limits
+from fes_mj.linkage.batch import batch_size
+from fes_mj.linkage.design import Design
+from fes_mj.linkage.joints import JOINTS
+from fes_mj.linkage.kinematics import Motion
+from fes_mj.linkage.variables import replaced
+from fes_mj.moments.drive import commanded
+from fes_mj.moments.fourier import HARMONICS
+from fes_mj.statics.extrapolation import zone_powers
+from fes_mj.statics.turn import QuasiStatic
 
 # Over the angles of SCAN; against twenty times as many a power changes by less than 0.02 W rms, and with a lag, which
 # filters the jumps of the torque map, by less than 0.2 W.

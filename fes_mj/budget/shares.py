@@ -5,8 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fes_mj.arrays import FloatArray, IntArray
-from fes_mj.errors import require_extra
+from fes_mj.common.arrays import FloatArray, IntArray
+from fes_mj.common.errors import require_extra
 
 SAMPLES = 1024  # times two more than there are unknowns are evaluated; a power of two, as Sobol's points ask
 _SEED = 2022

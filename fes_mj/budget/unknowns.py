@@ -6,30 +6,29 @@ An unknown, be it a curve, a linkage or a number, is so reduced to one index; th
 import zlib
 from dataclasses import dataclass
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from fes_mj.arrays import FloatArray
-from fes_mj.design import Design
-from fes_mj.design_file import identified_draws, load_design
-from fes_mj.inputs import read_toml
-from fes_mj.joints import JOINTS
-from fes_mj.kinematics import FULL_TURN
-from fes_mj.moment_samples import sampled_coefficients
-from fes_mj.moments import GROUPS, JointMoments
-from fes_mj.moments_file import load_moments
-from fes_mj.torque_velocity import TorqueVelocity, drawn_relations, stacked
-from fes_mj.uncertainty import independent_deviations
-from fes_mj.variables import LENGTHS, component
+from fes_mj.common.arrays import FloatArray
+from fes_mj.common.reading import DATA, read_toml
+from fes_mj.linkage.design import Design
+from fes_mj.linkage.design_file import identified_draws, load_design
+from fes_mj.linkage.joints import JOINTS
+from fes_mj.linkage.kinematics import FULL_TURN
+from fes_mj.linkage.variables import LENGTHS, component
+from fes_mj.moments.files import load_moments
+from fes_mj.moments.joint_moments import GROUPS, JointMoments
+from fes_mj.moments.samples import sampled_coefficients
+from fes_mj.moments.torque_velocity import TorqueVelocity, drawn_relations, stacked
+from fes_mj.moments.uncertainty import independent_deviations
 
 # As data/error_budget.toml has them; the last has no effect on a mean power.
 MOMENTS, DIMENSIONS, SPEED, LAG = "moments", "dimensions", "speed dependence", "lag"
 RIDER, EXTRAPOLATION, MASSES = "rider", "extrapolation", "leg masses"
 ZONES = 8  # of extrapolation.zone_powers
 _SEED = 2022
-_FILE = Path(__file__).parents[1] / "data" / "error_budget.toml"
+_FILE = DATA / "error_budget.toml"
 
 
 @dataclass(frozen=True, eq=False)

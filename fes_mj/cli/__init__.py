@@ -4,7 +4,7 @@ import os
 import sys
 
 from fes_mj.cli.process import interruption_code, prepare
-from fes_mj.errors import InputError
+from fes_mj.common.errors import InputError
 
 AGREES, DISAGREES, BAD_INPUT, MISSING_PART = 0, 1, 2, 3
 PURPOSE = "Does a pedalling linkage for FES cycling deliver its power when legs have mass and loops must close?"

@@ -7,9 +7,9 @@ from cyclopts import App, CycloptsError
 
 from fes_mj.cli import AGREES, BAD_INPUT, COMMANDS, DISAGREES, MISSING_PART, PURPOSE
 from fes_mj.cli.process import interruption_code
-from fes_mj.console import errors
-from fes_mj.errors import InputError, MissingPartError, UnstableError
-from fes_mj.text import printable
+from fes_mj.common.console import errors
+from fes_mj.common.errors import InputError, MissingPartError, UnstableError
+from fes_mj.common.text import printable
 
 EXPECTED = {
     CycloptsError: BAD_INPUT,

@@ -1,7 +1,7 @@
 """`fes_mj explain`: what a check guards against and what usually breaks it."""
 
-from fes_mj.checks import definitions, find
-from fes_mj.console import number, print_table, say
+from fes_mj.common.checks import definitions, find
+from fes_mj.common.console import number, print_table, say
 
 
 def explain(check: str | None = None, /) -> int:

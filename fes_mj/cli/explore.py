@@ -1,8 +1,8 @@
 """`fes_mj explore`: the designer's page in the browser."""
 
 from fes_mj.cli.options import MomentsOptions
-from fes_mj.design_file import load_design
-from fes_mj.errors import InputError
+from fes_mj.common.errors import InputError
+from fes_mj.linkage.design_file import load_design
 
 _DEFAULTS = MomentsOptions()
 PORT, THIS_MACHINE = 8026, "127.0.0.1"

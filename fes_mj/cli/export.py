@@ -6,10 +6,10 @@ from typing import Annotated, Literal
 from cyclopts import Parameter
 
 from fes_mj.cli.options import LoadOptions
-from fes_mj.console import say
-from fes_mj.errors import InputError
-from fes_mj.files import require_replaceable, require_writable, write_files
-from fes_mj.text import printable
+from fes_mj.common.console import say
+from fes_mj.common.errors import InputError
+from fes_mj.common.text import printable
+from fes_mj.common.writing import require_replaceable, require_writable, write_files
 
 _DEFAULTS = LoadOptions()
 _SCENE = "scene.xml"

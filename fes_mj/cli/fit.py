@@ -12,18 +12,18 @@ from cyclopts import Parameter
 from fes_mj.cli.fit_options import RiderOptions, SeatOptions, sample_size
 from fes_mj.cli.options import MomentsOptions, PrintOptions, crank_speed
 from fes_mj.cli.static import print_notes, span, with_error
-from fes_mj.console import conclude, print_table, progress_bar, say
-from fes_mj.design_file import design_toml, load_design
-from fes_mj.errors import InputError, require_extra
-from fes_mj.files import json_text, replacing, require_writable, write_text
-from fes_mj.fit import Fit, fit as best_fit, seat_text
-from fes_mj.statics import QuasiStatic
-from fes_mj.text import printable
+from fes_mj.common.console import conclude, print_table, progress_bar, say
+from fes_mj.common.errors import InputError, require_extra
+from fes_mj.common.text import printable
+from fes_mj.common.writing import json_text, replacing, require_writable, write_text
+from fes_mj.fit.seat import Fit, fit as best_fit, seat_text
+from fes_mj.linkage.design_file import design_toml, load_design
+from fes_mj.statics.turn import QuasiStatic
 
 if TYPE_CHECKING:
-    from fes_mj.design import Design
-    from fes_mj.fit import SeatLimits
-    from fes_mj.moments import JointMoments
+    from fes_mj.fit.seat import SeatLimits
+    from fes_mj.linkage.design import Design
+    from fes_mj.moments.joint_moments import JointMoments
 
 _PRINT, _MOMENTS, _RIDER, _SEAT = PrintOptions(), MomentsOptions(), RiderOptions(), SeatOptions()
 
@@ -145,14 +145,14 @@ def _population(
     if plot:
         require_extra("report", "matplotlib")
         require_writable(plot, "the picture", ".png", inputs)
-    from fes_mj.population import steps, study_population
+    from fes_mj.fit.population import steps, study_population
 
     with progress_bar(f"{design.name}, riders", steps(), options.silent) as advance:
         study = study_population(design, moments, limits=limits, samples=size, seed=seed, done=lambda: advance(1))
     if plot:
         import matplotlib as mpl
 
-        from fes_mj.style import STYLE
+        from fes_mj.common.style import STYLE
         from fes_mj.viewing.people import population_figure
 
         with mpl.rc_context(STYLE), replacing(plot) as temporary:

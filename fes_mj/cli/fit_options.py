@@ -7,11 +7,11 @@ from typing import Annotated, Literal
 
 from cyclopts import Parameter
 
-from fes_mj.design import Design, Rider
-from fes_mj.errors import InputError
-from fes_mj.fit import SeatLimits
-from fes_mj.riders import SAMPLES, Population, populations
-from fes_mj.variables import VARIABLES
+from fes_mj.common.errors import InputError
+from fes_mj.fit.seat import SeatLimits
+from fes_mj.linkage.design import Design, Rider
+from fes_mj.linkage.riders import SAMPLES, Population, populations
+from fes_mj.linkage.variables import VARIABLES
 
 _Range = Annotated[tuple[float, float], Parameter(negative="")]
 FEWEST, MOST = 10, 100_000  # people of each sex in a sample

@@ -9,12 +9,12 @@ from cyclopts import Parameter
 
 from fes_mj.cli.options import PrintOptions, require_picture, warn_of
 from fes_mj.cli.static import span, with_error
-from fes_mj.console import print_table, say
-from fes_mj.errors import require_extra
-from fes_mj.files import json_text, require_writable, write_text
-from fes_mj.moments import GROUPS, JointMoments
-from fes_mj.moments_file import Measurement, load_measurement, load_moments, measured_files, moments_csv
-from fes_mj.units import RPM
+from fes_mj.common.console import print_table, say
+from fes_mj.common.errors import require_extra
+from fes_mj.common.units import RPM
+from fes_mj.common.writing import json_text, require_writable, write_text
+from fes_mj.moments.files import Measurement, load_measurement, load_moments, measured_files, moments_csv
+from fes_mj.moments.joint_moments import GROUPS, JointMoments
 
 _DEFAULTS = PrintOptions()
 

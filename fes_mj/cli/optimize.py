@@ -14,13 +14,13 @@ from cyclopts import Parameter
 
 from fes_mj.cli.process import interruption_code
 from fes_mj.cli.search_options import SearchOptions, shell_word
-from fes_mj.console import errors, print_table, progress_bar, say
-from fes_mj.design_file import design_toml, load_design
-from fes_mj.files import json_text, require_replaceable, require_writable, write_text
-from fes_mj.text import printable
+from fes_mj.common.console import errors, print_table, progress_bar, say
+from fes_mj.common.text import printable
+from fes_mj.common.writing import json_text, require_replaceable, require_writable, write_text
+from fes_mj.linkage.design_file import design_toml, load_design
 
 if TYPE_CHECKING:
-    from fes_mj.design import Design
+    from fes_mj.linkage.design import Design
     from fes_mj.optimization.findings import Findings
     from fes_mj.optimization.outcome import Outcome
     from fes_mj.optimization.problem import Problem
@@ -117,9 +117,9 @@ def _check_files(out: Path | None, report: Path | None, options: SearchOptions) 
 
 def _search(problem: Problem, options: SearchOptions, findings: Findings | None) -> Outcome:
     """The best of several independent searches, or the front."""
+    from fes_mj.common.parallel import Workers
     from fes_mj.optimization.optimize import optimize as run
     from fes_mj.optimization.outcome import Outcome, front_outcome
-    from fes_mj.parallel import Workers
 
     with findings.searching() if findings else nullcontext():
         if options.method == "nsga-ii":

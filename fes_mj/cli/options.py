@@ -7,15 +7,15 @@ from typing import Annotated, Literal, NamedTuple
 
 from cyclopts import Parameter
 
-from fes_mj.console import complain
-from fes_mj.design import Design
-from fes_mj.design_file import load_design
-from fes_mj.errors import InputError
-from fes_mj.moments import JointMoments
-from fes_mj.moments_file import load_moments, measured_files
-from fes_mj.torque_velocity import load_torque_velocity
-from fes_mj.units import RPM
-from fes_mj.variables import VARIABLES
+from fes_mj.common.console import complain
+from fes_mj.common.errors import InputError
+from fes_mj.common.units import RPM
+from fes_mj.linkage.design import Design
+from fes_mj.linkage.design_file import load_design
+from fes_mj.linkage.variables import VARIABLES
+from fes_mj.moments.files import load_moments, measured_files
+from fes_mj.moments.joint_moments import JointMoments
+from fes_mj.moments.torque_velocity import load_torque_velocity
 
 
 class Range(NamedTuple):

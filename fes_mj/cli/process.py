@@ -7,7 +7,7 @@ import sys
 from types import FrameType
 from typing import NoReturn, TextIO
 
-from fes_mj.errors import InputError
+from fes_mj.common.errors import InputError
 
 
 class Stream(io.TextIOWrapper):

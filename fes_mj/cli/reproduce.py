@@ -5,9 +5,9 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from fes_mj.console import progress_bar, say
-from fes_mj.errors import require_extra
-from fes_mj.files import make_folder
+from fes_mj.common.console import progress_bar, say
+from fes_mj.common.errors import require_extra
+from fes_mj.common.writing import make_folder
 
 
 def reproduce(

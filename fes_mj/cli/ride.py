@@ -13,20 +13,20 @@ from cyclopts import Parameter
 from fes_mj.cli.options import LAG, MomentsOptions, PrintOptions, Range, require_lag
 from fes_mj.cli.simulate import check_rows, conclude_checks
 from fes_mj.cli.static import what_moves
-from fes_mj.console import print_table, say
-from fes_mj.design import TRICYCLE_SPEED
-from fes_mj.design_file import load_design
-from fes_mj.errors import InputError, require_extra
-from fes_mj.files import json_text, require_folder, require_replaceable, require_writable, write_files
-from fes_mj.torque_velocity import load_torque_velocity
-from fes_mj.units import KMH, RPM
+from fes_mj.common.console import print_table, say
+from fes_mj.common.errors import InputError, require_extra
+from fes_mj.common.units import KMH, RPM
+from fes_mj.common.writing import json_text, require_folder, require_replaceable, require_writable, write_files
+from fes_mj.linkage.design import TRICYCLE_SPEED
+from fes_mj.linkage.design_file import load_design
+from fes_mj.moments.torque_velocity import load_torque_velocity
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from fes_mj.ride import Ride, Trace
-    from fes_mj.ride_case import RideCase
-    from fes_mj.starts import Starts
+    from fes_mj.crosscheck.ride_case import RideCase
+    from fes_mj.riding.ride import Ride, Trace
+    from fes_mj.riding.starts import Starts
 
 
 _RANGES = {
@@ -106,7 +106,7 @@ class RideOptions(PrintOptions, MomentsOptions):
             moments = moments.at_speed(load_torque_velocity("hill"))
         if self.lag:
             moments.require_cadence("with a lag")
-        from fes_mj.ride import Ride, Road
+        from fes_mj.riding.ride import Ride, Road
 
         launch = TRICYCLE_SPEED if self.launch is None else self.launch * KMH
         return Ride(
@@ -151,11 +151,11 @@ def ride(
     if render:
         require_writable(render, "the video", ".mp4", inputs)
     paths = _results(loaded, out, starts, inputs) if out else {}
-    from fes_mj.ride_case import RideCase
+    from fes_mj.crosscheck.ride_case import RideCase
 
     case, found = RideCase(loaded), None
     if starts:
-        from fes_mj.starts import starts as find_starts
+        from fes_mj.riding.starts import starts as find_starts
 
         found = find_starts(loaded)
     if paths:

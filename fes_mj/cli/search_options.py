@@ -12,9 +12,9 @@ from cyclopts import Parameter
 
 from fes_mj.cli.fit_options import sample_size
 from fes_mj.cli.options import MomentsOptions, PrintOptions
-from fes_mj.errors import InputError, require_extra
-from fes_mj.moments import JointMoments
-from fes_mj.provenance import provenance
+from fes_mj.common.errors import InputError, require_extra
+from fes_mj.common.provenance import provenance
+from fes_mj.moments.joint_moments import JointMoments
 
 if TYPE_CHECKING:
     from fes_mj.optimization.problem import Problem

@@ -21,19 +21,19 @@ from fes_mj.cli.static import (
     turn_rows,
     with_error,
 )
-from fes_mj.console import conclude, number, print_table, say, verdict
-from fes_mj.errors import InputError
-from fes_mj.files import json_text, require_folder, require_replaceable, require_writable, write_files
-from fes_mj.time_step import LONGEST_TIMESTEP
-from fes_mj.units import RPM
+from fes_mj.common.console import conclude, number, print_table, say, verdict
+from fes_mj.common.errors import InputError
+from fes_mj.common.units import RPM
+from fes_mj.common.writing import json_text, require_folder, require_replaceable, require_writable, write_files
+from fes_mj.simulation.time_step import LONGEST_TIMESTEP
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from rich.text import Text
 
-    from fes_mj.checks import Check
-    from fes_mj.crosscheck import Case
+    from fes_mj.common.checks import Check
+    from fes_mj.crosscheck.turn_case import Case
 
 _DEFAULTS = RunOptions()
 MOST_TURNS = 1000
@@ -77,7 +77,7 @@ def simulate(
     if render:
         require_writable(render, "the video", ".mp4", inputs)
     _check_speed(speed, loaded.cadence, render)
-    from fes_mj.crosscheck import Case
+    from fes_mj.crosscheck.turn_case import Case
 
     case = Case(*loaded, timestep, turns, legs)
     results = _results(case, out, inputs) if out else []

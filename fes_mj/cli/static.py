@@ -8,14 +8,14 @@ from cyclopts import Parameter
 
 from fes_mj.budget.budget import error_budget, summary
 from fes_mj.cli.options import RunOptions
-from fes_mj.console import conclude, print_table, say
-from fes_mj.design import Design
-from fes_mj.files import json_text
-from fes_mj.geometry import CRANK_ZERO, FROM_TOP, degrees_from_top
-from fes_mj.joint_forces import NET_FORCE, JointForces, KneeLoad, peaks
-from fes_mj.moments import JointMoments
-from fes_mj.statics import QuasiStatic, quasi_static
-from fes_mj.units import RPM
+from fes_mj.common.console import conclude, print_table, say
+from fes_mj.common.units import RPM
+from fes_mj.common.writing import json_text
+from fes_mj.linkage.assembly import CRANK_ZERO, FROM_TOP, degrees_from_top
+from fes_mj.linkage.design import Design
+from fes_mj.moments.joint_moments import JointMoments
+from fes_mj.statics.joint_forces import NET_FORCE, JointForces, KneeLoad, peaks
+from fes_mj.statics.turn import QuasiStatic, quasi_static
 
 _DEFAULTS = RunOptions()
 

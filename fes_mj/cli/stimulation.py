@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from cyclopts import Parameter
 
 from fes_mj.cli.options import PrintOptions, crank_speed, require_lag, require_picture
-from fes_mj.console import print_table, say
-from fes_mj.design_file import load_design
-from fes_mj.errors import require_extra
-from fes_mj.files import json_text, require_writable, write_files
+from fes_mj.common.console import print_table, say
+from fes_mj.common.errors import require_extra
+from fes_mj.common.writing import json_text, require_writable, write_files
+from fes_mj.linkage.design_file import load_design
 
 if TYPE_CHECKING:
-    from fes_mj.design import Design
-    from fes_mj.stimulation import Window
+    from fes_mj.linkage.design import Design
+    from fes_mj.riding.stimulation import Window
 
 _DEFAULTS = PrintOptions()
 
@@ -61,7 +61,7 @@ def stimulation(
         require_writable(plot, "the plot", "", [*inputs, *([csv] if csv else [])])
         require_picture(plot)
         require_extra("report", "matplotlib")
-    from fes_mj.stimulation import stimulation as find_windows, summary, table_csv
+    from fes_mj.riding.stimulation import stimulation as find_windows, summary, table_csv
 
     windows = find_windows(loaded, cadences, lag)
     if plot:
@@ -81,7 +81,7 @@ def stimulation(
 
 
 def _print(design: Design, windows: list[Window]) -> None:
-    from fes_mj.stimulation import CORE, ZERO
+    from fes_mj.riding.stimulation import CORE, ZERO
 
     rows = []
     for window in windows:

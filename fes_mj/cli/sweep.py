@@ -11,12 +11,12 @@ from urllib.parse import urlsplit
 from cyclopts import Parameter
 
 from fes_mj.cli.options import PrintOptions, warn_of
-from fes_mj.console import print_table, progress_bar
-from fes_mj.errors import InputError, require_extra
-from fes_mj.files import json_text, make_folder, require_writable
+from fes_mj.common.console import print_table, progress_bar
+from fes_mj.common.errors import InputError, require_extra
+from fes_mj.common.writing import json_text, make_folder, require_writable
 
 if TYPE_CHECKING:
-    from fes_mj.parallel import Workers
+    from fes_mj.common.parallel import Workers
     from fes_mj.sweep.study import Study
     from fes_mj.sweep.sweep import Sweep
 
@@ -52,7 +52,7 @@ def sweep(
     plot
         Where one or two numbers vary, draw the mean crank power over them: a picture (.png).
     """
-    from fes_mj.parallel import Workers
+    from fes_mj.common.parallel import Workers
     from fes_mj.sweep.study import load_study
     from fes_mj.sweep.sweep import Sweep
 

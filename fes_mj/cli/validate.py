@@ -10,16 +10,16 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from fes_mj.checks import Check, definitions
 from fes_mj.cli.options import RunOptions
 from fes_mj.cli.simulate import check_rows
 from fes_mj.cli.static import print_notes
-from fes_mj.console import conclude, print_table, say, track
-from fes_mj.design_file import DESIGNS
-from fes_mj.errors import InputError
-from fes_mj.extrapolation import require_motion
-from fes_mj.files import json_text, require_writable, write_text
-from fes_mj.provenance import provenance
+from fes_mj.common.checks import Check, definitions
+from fes_mj.common.console import conclude, print_table, say, track
+from fes_mj.common.errors import InputError
+from fes_mj.common.provenance import provenance
+from fes_mj.common.writing import json_text, require_writable, write_text
+from fes_mj.linkage.design_file import DESIGNS
+from fes_mj.statics.extrapolation import require_motion
 
 if TYPE_CHECKING:
     from fes_mj.verification.case import VerificationCase

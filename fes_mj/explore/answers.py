@@ -5,18 +5,19 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, TypeVar
 
-from fes_mj.design import LEGS, Design
-from fes_mj.design_file import DESIGNS, design_toml, load_design
-from fes_mj.errors import InputError
+from fes_mj.common.errors import InputError
+from fes_mj.common.style import COLOURS, SERIES
+from fes_mj.common.text import printable
 from fes_mj.explore.dimensions import content_of, design_of, dimensions
 from fes_mj.explore.runs import ridden, simulated
 from fes_mj.explore.turn import turn
-from fes_mj.moments import GROUPS, JointMoments
-from fes_mj.moments_file import load_moments
+from fes_mj.linkage.design import Design
+from fes_mj.linkage.design_file import DESIGNS, design_toml, load_design
+from fes_mj.linkage.legs import LEGS
+from fes_mj.moments.files import load_moments
+from fes_mj.moments.joint_moments import GROUPS, JointMoments
 from fes_mj.simulation.export import mjcf_text
 from fes_mj.simulation.mjcf import build_mjcf
-from fes_mj.style import COLOURS, SERIES
-from fes_mj.text import printable
 
 Loaded = TypeVar("Loaded")
 

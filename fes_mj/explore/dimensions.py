@@ -4,13 +4,13 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
-from fes_mj.design import Design, Linkage
-from fes_mj.design_file import design_toml, read_design
-from fes_mj.errors import InputError
-from fes_mj.inputs import Section
-from fes_mj.text import printable
-from fes_mj.units import RPM
-from fes_mj.variables import COMPONENTS, VARIABLES, Component, component
+from fes_mj.common.errors import InputError
+from fes_mj.common.reading import Section
+from fes_mj.common.text import printable
+from fes_mj.common.units import RPM
+from fes_mj.linkage.design import Design, Linkage
+from fes_mj.linkage.design_file import design_toml, read_design
+from fes_mj.linkage.variables import COMPONENTS, VARIABLES, Component, component
 
 # Unit of files -> unit of the page, how many of it, how far a slider goes to either side, its step (page's unit).
 _SCALES: dict[str, tuple[str, float, float, float]] = {

@@ -4,12 +4,12 @@ from dataclasses import replace
 from functools import cache
 from typing import Any, NamedTuple
 
-from fes_mj.design import Design
-from fes_mj.moments_file import load_moments
+from fes_mj.common.text import typeset
+from fes_mj.linkage.design import Design
+from fes_mj.moments.files import load_moments
 from fes_mj.optimization.constraints import Constraint, length_values
 from fes_mj.optimization.problem import LENGTH_COUNT, Problem, make_problem
-from fes_mj.statics import QuasiStatic
-from fes_mj.text import typeset
+from fes_mj.statics.turn import QuasiStatic
 
 
 class Mark(NamedTuple):

@@ -4,12 +4,12 @@ from typing import Any
 
 import numpy as np
 
-from fes_mj.arrays import ComplexArray, FloatArray
-from fes_mj.design import BODIES, Design
-from fes_mj.geometry import DYADS, LEAST_CLEARANCE, clearances
-from fes_mj.kinematics import close_dyad, positions
+from fes_mj.common.arrays import ComplexArray, FloatArray
+from fes_mj.common.style import hex_colour
+from fes_mj.linkage.assembly import DYADS, LEAST_CLEARANCE, clearances
+from fes_mj.linkage.design import BODIES, Design
+from fes_mj.linkage.kinematics import close_dyad, positions
 from fes_mj.simulation.appearance import PARTS
-from fes_mj.style import hex_colour
 from fes_mj.viewing.bars import bars
 
 Ends = dict[str, tuple[ComplexArray, ComplexArray]]  # body -> its origin and tip over crank angle, m

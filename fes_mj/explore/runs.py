@@ -3,16 +3,16 @@
 from collections.abc import Sequence
 from typing import Any
 
-from fes_mj.checks import Check
-from fes_mj.console import number
-from fes_mj.crosscheck import Case
-from fes_mj.design import Design
-from fes_mj.moments import JointMoments
-from fes_mj.ride import Ride
-from fes_mj.ride_case import RideCase
-from fes_mj.text import typeset
-from fes_mj.torque_velocity import load_torque_velocity
-from fes_mj.units import KMH
+from fes_mj.common.checks import Check
+from fes_mj.common.console import number
+from fes_mj.common.text import typeset
+from fes_mj.common.units import KMH
+from fes_mj.crosscheck.ride_case import RideCase
+from fes_mj.crosscheck.turn_case import Case
+from fes_mj.linkage.design import Design
+from fes_mj.moments.joint_moments import JointMoments
+from fes_mj.moments.torque_velocity import load_torque_velocity
+from fes_mj.riding.ride import Ride
 
 
 def simulated(design: Design, moments: JointMoments, legs: int) -> dict[str, Any]:

@@ -11,10 +11,10 @@ from pathlib import Path
 from socketserver import ThreadingTCPServer
 from typing import Any
 
-from fes_mj.console import say
-from fes_mj.errors import InputError, MissingPartError, UnstableError
+from fes_mj.common.console import say
+from fes_mj.common.errors import InputError, MissingPartError, UnstableError
+from fes_mj.common.reading import LARGEST_INPUT
 from fes_mj.explore.answers import Answers
-from fes_mj.inputs import LARGEST_INPUT
 
 _FOLDER = Path(__file__).parent / "page"
 _KINDS = {".html": "text/html", ".css": "text/css", ".js": "text/javascript"}

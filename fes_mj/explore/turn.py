@@ -5,22 +5,22 @@ from typing import Any
 
 import numpy as np
 
-from fes_mj.arrays import FloatArray
-from fes_mj.characteristics import motion_characteristics, power_characteristics
-from fes_mj.design import LEGS, Design
-from fes_mj.errors import InputError
+from fes_mj.common.errors import InputError
+from fes_mj.common.text import typeset
+from fes_mj.common.units import RPM
 from fes_mj.explore import pose
 from fes_mj.explore.limits import broken
-from fes_mj.extrapolation import beyond
-from fes_mj.geometry import grashof_margin
-from fes_mj.inverse_dynamics import crank_moment
-from fes_mj.joint_forces import JointForces, peaks
-from fes_mj.joints import JOINTS
-from fes_mj.moments import JointMoments
-from fes_mj.statics import QuasiStatic, quasi_static
-from fes_mj.text import typeset
-from fes_mj.uncertainty import instant_power_weights, with_sd
-from fes_mj.units import RPM
+from fes_mj.linkage.assembly import grashof_margin
+from fes_mj.linkage.design import Design
+from fes_mj.linkage.joints import JOINTS
+from fes_mj.linkage.legs import all_legs
+from fes_mj.moments.joint_moments import JointMoments
+from fes_mj.moments.uncertainty import instant_power_weights, with_sd
+from fes_mj.statics.characteristics import motion_characteristics, power_characteristics
+from fes_mj.statics.extrapolation import beyond
+from fes_mj.statics.inverse_dynamics import crank_moment
+from fes_mj.statics.joint_forces import JointForces, peaks
+from fes_mj.statics.turn import QuasiStatic, quasi_static
 
 POINTS = 360  # crank angles of a turn, from 0
 DIGITS = 3  # after the point, of curves in W and deg
@@ -52,12 +52,12 @@ def _under(solved: QuasiStatic, legs: int) -> dict[str, Any]:
     covariance, reference = solved.moments.covariance, solved.torque.reference
     deviation = None
     if covariance is not None:
-        weights = _all_legs(instant_power_weights(solved.motion, solved.cadence, solved.torque), legs)
-        deviation = np.sqrt(np.sum((weights @ covariance) * weights, axis=1))
+        weights = all_legs(instant_power_weights(solved.motion, solved.cadence, solved.torque).T, legs)
+        deviation = np.sqrt(np.sum((covariance @ weights) * weights, axis=0))
     outside = beyond(reference, solved.joint_angle)
     return {
-        "static": np.round(_all_legs(solved.power, legs), DIGITS),
-        "masses": np.round(_all_legs(massive, legs), DIGITS),
+        "static": np.round(all_legs(solved.power, legs), DIGITS),
+        "masses": np.round(all_legs(massive, legs), DIGITS),
         "sd": None if deviation is None else np.round(deviation, DIGITS),
         "power_mean_W": solved.power_mean,
         "range_deg": {joint: np.degrees(reference.ranges[joint]) for joint in JOINTS},
@@ -65,12 +65,6 @@ def _under(solved: QuasiStatic, legs: int) -> dict[str, Any]:
         "numbers": _power_numbers(solved),
         "note": solved.extrapolation.verdict,
     }
-
-
-def _all_legs(curve: FloatArray, legs: int) -> FloatArray:
-    """A curve of one leg (angles first) summed over the legs, which trail the first by whole steps."""
-    steps = (round(leg.lag / (2 * np.pi) * POINTS) for leg in LEGS[legs])
-    return np.asarray(sum(np.roll(curve, step, axis=0) for step in steps))
 
 
 def _number(name: str, words: str, text: str, unit: str) -> dict[str, str]:

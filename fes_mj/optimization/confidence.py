@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fes_mj.arrays import FloatArray
+from fes_mj.common.arrays import FloatArray
 
 
 class Gain(NamedTuple):

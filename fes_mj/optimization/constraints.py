@@ -4,14 +4,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from fes_mj.arrays import ComplexArray, FloatArray
-from fes_mj.cycles import Cycles
-from fes_mj.design import Design
-from fes_mj.geometry import LEAST_CLEARANCE, grashof_margin
-from fes_mj.joints import JOINTS, PerJoint
+from fes_mj.common.arrays import ComplexArray, FloatArray
+from fes_mj.linkage.assembly import LEAST_CLEARANCE, grashof_margin
+from fes_mj.linkage.design import Design
+from fes_mj.linkage.joints import JOINTS, PerJoint
+from fes_mj.linkage.variables import COMPONENTS
+from fes_mj.moments.reference_tricycle import ReferenceTricycle
 from fes_mj.optimization.problem_file import VARIED, Limits, depth_inside
-from fes_mj.reference_tricycle import ReferenceTricycle
-from fes_mj.variables import COMPONENTS
+from fes_mj.statics.cycles import Cycles
 
 _LEAST_OVERLAP = 0.1  # deg
 _BOUNDS = np.array([(COMPONENTS[name].variable.low, COMPONENTS[name].variable.high) for name in VARIED[:-1]]).T

@@ -13,15 +13,15 @@ from typing import Any
 
 import numpy as np
 
-from fes_mj.arrays import FloatArray
-from fes_mj.design_file import design_toml
-from fes_mj.errors import InputError
-from fes_mj.files import json_text, make_folder, write_text
-from fes_mj.inputs import read_json
+from fes_mj.common.arrays import FloatArray
+from fes_mj.common.errors import InputError
+from fes_mj.common.provenance import digest
+from fes_mj.common.reading import read_json
+from fes_mj.common.text import printable
+from fes_mj.common.writing import json_text, make_folder, write_text
+from fes_mj.linkage.design_file import design_toml
 from fes_mj.optimization.problem import Problem
 from fes_mj.optimization.search import Result
-from fes_mj.provenance import digest
-from fes_mj.text import printable
 
 _UNFINISHED = "\nBest so far, of a search that is not finished."
 

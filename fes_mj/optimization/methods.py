@@ -9,8 +9,8 @@ from typing import Any, TypeAlias
 import numpy as np
 from scipy.optimize import differential_evolution
 
-from fes_mj.arrays import FloatArray
-from fes_mj.errors import require_extra
+from fes_mj.common.arrays import FloatArray
+from fes_mj.common.errors import require_extra
 from fes_mj.optimization.search import BudgetSpentError, Search, feasible_start
 
 Start: TypeAlias = FloatArray | None

@@ -7,12 +7,12 @@ from functools import partial
 import numpy as np
 from numpy.random import SeedSequence
 
-from fes_mj.errors import InputError
+from fes_mj.common.errors import InputError
+from fes_mj.common.parallel import HERE, Workers, run_tasks
 from fes_mj.optimization.findings import Findings
 from fes_mj.optimization.methods import BUDGETS, METHODS, Start
 from fes_mj.optimization.problem import Problem
 from fes_mj.optimization.search import BudgetSpentError, Result, Search, require_feasible
-from fes_mj.parallel import HERE, Workers, run_tasks
 
 
 def search_once(

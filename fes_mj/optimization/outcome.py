@@ -7,14 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from fes_mj.arrays import FloatArray
-from fes_mj.cycles import WorkTable, cycles
-from fes_mj.moments import GROUPS
-from fes_mj.moments_file import load_moments
+from fes_mj.common.arrays import FloatArray
+from fes_mj.moments.files import load_moments
+from fes_mj.moments.joint_moments import GROUPS
 from fes_mj.optimization.findings import Findings
 from fes_mj.optimization.pareto import Front, pareto_front
 from fes_mj.optimization.problem import Problem
 from fes_mj.optimization.winner import Winner
+from fes_mj.statics.cycles import WorkTable, cycles
 
 
 @dataclass(frozen=True)

@@ -5,14 +5,14 @@ from typing import Any
 
 import numpy as np
 
-from fes_mj.arrays import FloatArray
-from fes_mj.design_file import design_toml
-from fes_mj.moments import GROUPS
+from fes_mj.common.arrays import FloatArray
+from fes_mj.common.style import COLOURS, INK, SERIES
+from fes_mj.linkage.design_file import design_toml
+from fes_mj.moments.joint_moments import GROUPS
 from fes_mj.optimization.outcome import Outcome
 from fes_mj.optimization.pareto import FLUCTUATION, Front
 from fes_mj.optimization.winner import Winner
-from fes_mj.statics import quasi_static
-from fes_mj.style import COLOURS, INK, SERIES
+from fes_mj.statics.turn import quasi_static
 from fes_mj.viewing.pages import page
 
 POSE = np.radians(200.0)  # crank angle at which leg and linkage are spread out

@@ -5,19 +5,20 @@ from typing import Any
 
 import numpy as np
 
-from fes_mj import kinematics
-from fes_mj.arrays import FloatArray, IntArray
-from fes_mj.batch import take
-from fes_mj.design import Design
-from fes_mj.errors import InputError, require_extra
-from fes_mj.files import csv_text
-from fes_mj.moments import GROUPS, JointMoments
+from fes_mj.common.arrays import FloatArray, IntArray
+from fes_mj.common.errors import InputError, require_extra
+from fes_mj.common.writing import csv_text
+from fes_mj.linkage import kinematics
+from fes_mj.linkage.batch import take
+from fes_mj.linkage.design import Design
+from fes_mj.linkage.legs import all_legs
+from fes_mj.linkage.variables import LENGTHS
+from fes_mj.moments.joint_moments import GROUPS, JointMoments
+from fes_mj.moments.torque_map import torque_map
 from fes_mj.optimization.problem import Evaluation, Problem
 from fes_mj.optimization.problem_file import VARIED
 from fes_mj.optimization.search import Improved, Search
-from fes_mj.statics import virtual_work
-from fes_mj.torque_map import torque_map
-from fes_mj.variables import LENGTHS
+from fes_mj.statics.turn import virtual_work
 
 POPULATION = 100
 FLUCTUATION = "fluctuation of energy"  # the coefficient, see fluctuation()
@@ -145,7 +146,7 @@ def fluctuation(design: Design, moments: JointMoments, points: int = 360) -> Flo
     crank_angle = np.arange(points) * (2 * np.pi / points)
     motion = kinematics.solve(design, crank_angle)
     leg = virtual_work(motion, torque_map(moments).along(motion, design.linkage.cadence))
-    crank = np.atleast_2d(leg + np.roll(leg, points // 2, axis=-1))
+    crank = np.atleast_2d(all_legs(leg))
     mean = crank.mean(axis=1, keepdims=True)
     surplus = np.cumsum(crank - mean, axis=1)
     return np.asarray(np.ptp(surplus, axis=1) / (points * np.abs(mean[:, 0])))

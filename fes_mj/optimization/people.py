@@ -10,14 +10,14 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.cluster.vq import kmeans2
 
-from fes_mj.arrays import FloatArray
-from fes_mj.batch import batch_size, take
-from fes_mj.design import Design
-from fes_mj.fit import SEAT_LIMITS, Seats
-from fes_mj.geometry import SCAN
-from fes_mj.kinematics import positions
-from fes_mj.population import PEOPLE
-from fes_mj.riders import populations
+from fes_mj.common.arrays import FloatArray
+from fes_mj.fit.population import PEOPLE
+from fes_mj.fit.seat import SEAT_LIMITS, Seats
+from fes_mj.linkage.assembly import SCAN
+from fes_mj.linkage.batch import batch_size, take
+from fes_mj.linkage.design import Design
+from fes_mj.linkage.kinematics import positions
+from fes_mj.linkage.riders import populations
 
 STATISTICS: dict[str, Callable[[FloatArray], FloatArray]] = {
     "population": lambda power: power.mean(axis=1),

@@ -7,14 +7,15 @@ from typing import Any
 
 import numpy as np
 
-from fes_mj.arrays import BoolArray, FloatArray
-from fes_mj.batch import single, take
-from fes_mj.cycles import TURN_POINTS, WorkTable, cycles, joint_speeds, uncertain_table
-from fes_mj.design import Design
-from fes_mj.design_file import load_design
-from fes_mj.errors import InputError
-from fes_mj.joints import JOINTS, PerJoint
-from fes_mj.moments import JointMoments
+from fes_mj.common.arrays import BoolArray, FloatArray
+from fes_mj.common.errors import InputError
+from fes_mj.common.units import RPM
+from fes_mj.linkage.batch import single, take
+from fes_mj.linkage.design import Design
+from fes_mj.linkage.design_file import load_design
+from fes_mj.linkage.joints import JOINTS, PerJoint
+from fes_mj.linkage.variables import VARIABLES, component, replaced
+from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.optimization.constraints import (
     Constraint,
     length_constraints,
@@ -26,8 +27,7 @@ from fes_mj.optimization.constraints import (
 from fes_mj.optimization.people import ONE_RIDER, People
 from fes_mj.optimization.problem_file import DEFAULT, VARIED, Limits, load_limits
 from fes_mj.optimization.ripple import RippleLimit
-from fes_mj.units import RPM
-from fes_mj.variables import VARIABLES, component, replaced
+from fes_mj.statics.cycles import TURN_POINTS, WorkTable, cycles, joint_speeds, uncertain_table
 
 LENGTH_COUNT = len(VARIED) - 1  # all variables but the gear ratio, which comes last
 # A design below any feasible one, and each margin it was refused too early to have counts as ten scales.

@@ -6,12 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from fes_mj.arrays import ComplexArray, FloatArray
-from fes_mj.errors import InputError
-from fes_mj.inputs import Section, is_number, read_toml
-from fes_mj.variables import LENGTHS
+from fes_mj.common.arrays import ComplexArray, FloatArray
+from fes_mj.common.errors import InputError
+from fes_mj.common.reading import DATA, Section, is_number, read_toml
+from fes_mj.linkage.variables import LENGTHS
 
-DEFAULT = Path(__file__).parents[1] / "data" / "optimization.toml"
+DEFAULT = DATA / "optimization.toml"
 VARIED = (*LENGTHS, "gear_ratio")  # the ten variables x of the problem
 _PAIRS = ("knee_deg", "hip_deg")
 _NOT_NEGATIVE = ("gear_ratio_max", "joint_rounding_deg")

@@ -4,16 +4,18 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from fes_mj.arrays import FloatArray
-from fes_mj.batch import batch_size
-from fes_mj.design import TWO_LEGS, Design
-from fes_mj.geometry import SCAN
-from fes_mj.kinematics import solve
-from fes_mj.moments import JointMoments
-from fes_mj.reduced import even_ripple, masses
-from fes_mj.ride import Ride, Road
-from fes_mj.statics import virtual_work
-from fes_mj.torque_map import torque_map
+from fes_mj.common.arrays import FloatArray
+from fes_mj.linkage.assembly import SCAN
+from fes_mj.linkage.batch import batch_size
+from fes_mj.linkage.design import Design
+from fes_mj.linkage.inertia import CrankInertia, crank_inertia
+from fes_mj.linkage.kinematics import solve
+from fes_mj.linkage.legs import all_legs
+from fes_mj.moments.joint_moments import JointMoments
+from fes_mj.moments.torque_map import torque_map
+from fes_mj.riding.reduced import even_ripple
+from fes_mj.riding.ride import Ride, Road
+from fes_mj.statics.turn import virtual_work
 
 
 @dataclass(frozen=True)
@@ -31,9 +33,6 @@ class RippleLimit:
         """Of a batch of designs that turn, shape (designs,); from 120 angles, within 1 % of what a fine table gives."""
         motion = solve(design, SCAN)
         drive = virtual_work(motion, torque_map(self.moments).along(motion, design.linkage.cadence))
-        behind = [round(len(SCAN) * leg.lag / (2 * np.pi)) for leg in TWO_LEGS]
-        of_leg = masses(motion)
-        both = sum(np.roll(drive, rows, axis=-1) for rows in behind)
-        legs = sum(np.roll(of_leg, rows, axis=-2) for rows in behind)
-        ripple = even_ripple(Ride(design, self.moments, self.road, "fixed"), np.asarray(both), np.asarray(legs))
+        ride = Ride(design, self.moments, self.road, "fixed")
+        ripple = even_ripple(ride, all_legs(drive), CrankInertia(*map(all_legs, crank_inertia(motion))))
         return np.broadcast_to(ripple, batch_size(design))

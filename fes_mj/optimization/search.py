@@ -6,8 +6,8 @@ from typing import TypeAlias
 
 import numpy as np
 
-from fes_mj.arrays import FloatArray
-from fes_mj.errors import InputError
+from fes_mj.common.arrays import FloatArray
+from fes_mj.common.errors import InputError
 from fes_mj.optimization.problem import INFEASIBLE, LENGTH_COUNT, Problem
 
 Improved: TypeAlias = Callable[[FloatArray, float], None]  # a feasible design, shape (variables,), and its merit

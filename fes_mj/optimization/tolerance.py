@@ -5,10 +5,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fes_mj.arrays import FloatArray
-from fes_mj.cycles import WorkTable, cycles
-from fes_mj.design import Design
-from fes_mj.variables import lengths, with_lengths
+from fes_mj.common.arrays import FloatArray
+from fes_mj.linkage.design import Design
+from fes_mj.linkage.variables import lengths, with_lengths
+from fes_mj.statics.cycles import WorkTable, cycles
 
 MANUFACTURING = 0.001  # m, each length and each coordinate of R1 and R7
 LEG = 0.05  # m, thigh and shank independently

@@ -4,16 +4,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fes_mj.crosscheck import Case
-from fes_mj.cycles import WorkTable, cycles, joint_speeds
-from fes_mj.design import Design
-from fes_mj.joints import PerJoint
-from fes_mj.moments import JointMoments
+from fes_mj.crosscheck.turn_case import Case
+from fes_mj.linkage.design import Design
+from fes_mj.linkage.joints import PerJoint
+from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.optimization.confidence import Gain
 from fes_mj.optimization.tolerance import Tolerance, to_manufacturing, to_rider
-from fes_mj.reduced import steady_ripple
-from fes_mj.ride import Ride
-from fes_mj.statics import difference_sd, quasi_static
+from fes_mj.riding.reduced import steady_ripple
+from fes_mj.riding.ride import Ride
+from fes_mj.statics.cycles import WorkTable, cycles, joint_speeds
+from fes_mj.statics.turn import difference_sd, quasi_static
 
 
 @dataclass(frozen=True)

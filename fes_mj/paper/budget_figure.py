@@ -6,10 +6,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from fes_mj.moments import GROUPS
+from fes_mj.common.style import PARTS
+from fes_mj.moments.joint_moments import GROUPS
 from fes_mj.paper.error_budget import FREE, FULL, GAINS, Budgets, ratios
 from fes_mj.paper.printed import SIX_BARS
-from fes_mj.style import PARTS
 
 _RATIOS = np.linspace(0, 3, 301)
 _TICKS = (0.5, 1.0, *GAINS, 2.5)

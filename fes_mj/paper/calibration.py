@@ -6,19 +6,19 @@ from typing import Any
 
 import numpy as np
 
-from fes_mj.arrays import FloatArray
-from fes_mj.design_file import load_design
-from fes_mj.kinematics import solve
-from fes_mj.moments import GROUPS
+from fes_mj.common.arrays import FloatArray
+from fes_mj.common.markdown import Table
+from fes_mj.linkage.design_file import load_design
+from fes_mj.linkage.kinematics import solve
+from fes_mj.moments.joint_moments import GROUPS
+from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
+from fes_mj.moments.uncertainty import power_weights
 from fes_mj.paper.captions import captioned
 from fes_mj.paper.evidence import Evidence, of_group
 from fes_mj.paper.known import Known
 from fes_mj.paper.left_out import rms, scores
 from fes_mj.paper.reconstruction import Hyperparameters, Posterior, System, condition, most_likely
 from fes_mj.paper.statements import allowed_share
-from fes_mj.reference_tricycle import PAPER_TRICYCLE
-from fes_mj.table import Table
-from fes_mj.uncertainty import power_weights
 
 
 def left_out_table(known: Known) -> Table:

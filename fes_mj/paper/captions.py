@@ -3,9 +3,8 @@
 from collections.abc import Sequence
 from typing import Any
 
-from fes_mj.inputs import Section, read_toml
-from fes_mj.paper.printed import DATA
-from fes_mj.table import Table
+from fes_mj.common.markdown import Table
+from fes_mj.common.reading import DATA, Section, read_toml
 
 
 def captioned(name: str, rows: list[tuple[Any, ...]], **values: Sequence[str] | str) -> Table:

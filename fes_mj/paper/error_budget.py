@@ -5,18 +5,18 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from fes_mj.arrays import FloatArray
 from fes_mj.budget.budget import ErrorBudget, Spread, error_budget, together, unknowns
 from fes_mj.budget.power import UncertainPower
 from fes_mj.budget.shares import Share, shares
 from fes_mj.budget.unknowns import LAG, SPEED, priors
-from fes_mj.design_file import DESIGNS
-from fes_mj.moments import GROUPS
+from fes_mj.common.arrays import FloatArray
+from fes_mj.common.markdown import Table
+from fes_mj.linkage.design_file import DESIGNS
+from fes_mj.moments.joint_moments import GROUPS
+from fes_mj.moments.uncertainty import with_sd
 from fes_mj.paper.captions import captioned
 from fes_mj.paper.printed import SIX_BARS
-from fes_mj.statics import QuasiStatic
-from fes_mj.table import Table
-from fes_mj.uncertainty import with_sd
+from fes_mj.statics.turn import QuasiStatic
 
 DRAWS = 1000  # of each unknown: a standard deviation is known to 2 % of itself
 TIMES = 8  # each comes up in the rows of all together: a probability of one half is known to 0.6 %

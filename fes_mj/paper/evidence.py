@@ -6,17 +6,16 @@ from pathlib import Path
 
 import numpy as np
 
-from fes_mj import kinematics
-from fes_mj.arrays import FloatArray
-from fes_mj.design_file import DESIGNS, load_design
-from fes_mj.errors import InputError
-from fes_mj.fourier import fourier
-from fes_mj.inputs import Section, read_toml
-from fes_mj.joints import JOINTS
-from fes_mj.moments import GROUPS
-from fes_mj.paper.printed import DATA
-from fes_mj.reference_tricycle import PAPER_TRICYCLE
-from fes_mj.uncertainty import power_weights
+from fes_mj.common.arrays import FloatArray
+from fes_mj.common.errors import InputError
+from fes_mj.common.reading import DATA, Section, read_toml
+from fes_mj.linkage import kinematics
+from fes_mj.linkage.design_file import DESIGNS, load_design
+from fes_mj.linkage.joints import JOINTS
+from fes_mj.moments.fourier import fourier
+from fes_mj.moments.joint_moments import GROUPS
+from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
+from fes_mj.moments.uncertainty import power_weights
 
 UNITS = {"power": "W", "crank_power": "W", "moment": "N m"}
 DIRECTIONS = {"extension": 1.0, "flexion": -1.0}

@@ -8,11 +8,15 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from fes_mj.crosscheck import Case
-from fes_mj.fourier import TERMS
-from fes_mj.joints import JOINTS
-from fes_mj.kinematics import solve
-from fes_mj.moments import GROUPS
+from fes_mj.common.style import COLOURS, CRANK_LABEL, FAINT, LINKS, X_LABEL
+from fes_mj.common.units import KMH
+from fes_mj.crosscheck.turn_case import Case
+from fes_mj.linkage.joints import JOINTS
+from fes_mj.linkage.kinematics import solve
+from fes_mj.moments.fourier import TERMS
+from fes_mj.moments.joint_moments import GROUPS
+from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
+from fes_mj.moments.uncertainty import power_rows
 from fes_mj.paper.budget_figure import budget_figure
 from fes_mj.paper.known import STAGES, Known
 from fes_mj.paper.left_out import rms
@@ -20,11 +24,7 @@ from fes_mj.paper.printed import SIX_BARS
 from fes_mj.paper.reconstruction import Posterior
 from fes_mj.paper.riding import Riding
 from fes_mj.paper.runs import Runs
-from fes_mj.reference_tricycle import PAPER_TRICYCLE
-from fes_mj.ride import TRANSMISSIONS
-from fes_mj.style import COLOURS, CRANK_LABEL, FAINT, LINKS, X_LABEL
-from fes_mj.uncertainty import power_rows
-from fes_mj.units import KMH
+from fes_mj.riding.ride import TRANSMISSIONS
 from fes_mj.viewing.charts import draw_linkage, over_turn, turn_axis
 from fes_mj.viewing.people import population_figure
 

@@ -5,18 +5,18 @@ from typing import Any
 
 import numpy as np
 
-from fes_mj.characteristics import energy_swing
-from fes_mj.design import TWO_LEGS
-from fes_mj.moments import GROUPS
+from fes_mj.common.markdown import Table
+from fes_mj.linkage.legs import TWO_LEGS
+from fes_mj.moments.joint_moments import GROUPS
+from fes_mj.moments.torque_velocity import TorqueVelocity, load_torque_velocity
+from fes_mj.moments.uncertainty import with_sd
 from fes_mj.paper.captions import captioned
 from fes_mj.paper.printed import SIX_BARS, table1
 from fes_mj.paper.runs import Runs, joint_speed
-from fes_mj.reduced import steady_ripple
-from fes_mj.ride import Ride, Road
-from fes_mj.statics import QuasiStatic, quasi_static, ratio_sd
-from fes_mj.table import Table
-from fes_mj.torque_velocity import TorqueVelocity, load_torque_velocity
-from fes_mj.uncertainty import with_sd
+from fes_mj.riding.reduced import steady_ripple
+from fes_mj.riding.ride import Ride, Road
+from fes_mj.statics.characteristics import energy_swing
+from fes_mj.statics.turn import QuasiStatic, quasi_static, ratio_sd
 
 TRICYCLE_MASS = 15.0  # kg, assumption: a light recumbent tricycle
 

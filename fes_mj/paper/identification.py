@@ -10,13 +10,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import least_squares, minimize
 
-from fes_mj.arrays import FloatArray
-from fes_mj.design import Design
-from fes_mj.design_file import load_design
-from fes_mj.geometry import grashof_margin, joint_ranges
-from fes_mj.kinematics import FULL_TURN
+from fes_mj.common.arrays import FloatArray
+from fes_mj.linkage.assembly import grashof_margin, joint_ranges
+from fes_mj.linkage.design import Design
+from fes_mj.linkage.design_file import load_design
+from fes_mj.linkage.kinematics import FULL_TURN
+from fes_mj.linkage.variables import component, lengths, replaced, with_lengths
 from fes_mj.paper.printed import table1
-from fes_mj.variables import component, lengths, replaced, with_lengths
 from fes_mj.verification.case import Expected
 
 LENGTH_ROUNDING = 0.005  # m, Table 2 is rounded to 1 cm
@@ -102,7 +102,7 @@ def inside_rounding(
 ) -> dict[str, FloatArray]:
     """Linkages drawn evenly around the print that move as Table 1 says, by component, shape (linkages,) each.
 
-    half_widths: by component (fes_mj.variables), in the unit of files, how far it may be from the print. At most
+    half_widths: by component (linkage.variables), in the unit of files, how far it may be from the print. At most
     `wanted` linkages: those of which a finer turn says otherwise are left out.
     """
     printed, target = load_design(name, "printed"), table1()[name]

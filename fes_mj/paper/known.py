@@ -5,9 +5,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fes_mj.arrays import FloatArray
-from fes_mj.moment_samples import sampled_coefficients
-from fes_mj.moments import GROUPS
+from fes_mj.common.arrays import FloatArray
+from fes_mj.moments.joint_moments import GROUPS
+from fes_mj.moments.samples import sampled_coefficients
 from fes_mj.paper.evidence import Evidence, of_group
 from fes_mj.paper.left_out import LeftOut, left_out
 from fes_mj.paper.reconstruction import Hyperparameters, Posterior, draw, reconstruct

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fes_mj.arrays import FloatArray
+from fes_mj.common.arrays import FloatArray
 from fes_mj.paper.evidence import Evidence, functional, of_group
 from fes_mj.paper.reconstruction import Hyperparameters, Posterior, System, condition
 from fes_mj.paper.statements import told

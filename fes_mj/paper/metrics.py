@@ -6,18 +6,18 @@ from typing import Any
 
 import numpy as np
 
-from fes_mj.arrays import FloatArray
-from fes_mj.characteristics import extent, inactive_share
-from fes_mj.fourier import fourier
-from fes_mj.geometry import transmission_angles
-from fes_mj.joints import JOINTS
-from fes_mj.moments import GROUPS
+from fes_mj.common.arrays import FloatArray
+from fes_mj.common.markdown import Table
+from fes_mj.linkage.assembly import transmission_angles
+from fes_mj.linkage.joints import JOINTS
+from fes_mj.moments.fourier import fourier
+from fes_mj.moments.joint_moments import GROUPS
+from fes_mj.moments.uncertainty import power_rows, with_sd
 from fes_mj.paper.captions import captioned
 from fes_mj.paper.known import Known
 from fes_mj.paper.runs import Runs
-from fes_mj.statics import QuasiStatic
-from fes_mj.table import Table
-from fes_mj.uncertainty import power_rows, with_sd
+from fes_mj.statics.characteristics import extent, inactive_share
+from fes_mj.statics.turn import QuasiStatic
 
 WIDTHS = (2.0, 5.0, 10.0)  # deg over which a jump of the torque map is smoothed
 _DRAWS = 20_000  # of the criteria's weights

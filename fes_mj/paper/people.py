@@ -2,12 +2,12 @@
 
 from typing import Any
 
-from fes_mj.design import Rider
+from fes_mj.common.markdown import Table
+from fes_mj.fit.population import SEATS
+from fes_mj.linkage.design import Rider
+from fes_mj.linkage.riders import populations
 from fes_mj.paper.captions import captioned
 from fes_mj.paper.runs import Runs
-from fes_mj.population import SEATS
-from fes_mj.riders import populations
-from fes_mj.table import Table
 
 
 def percentile_table() -> Table:

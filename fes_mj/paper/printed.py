@@ -1,11 +1,8 @@
 """What the paper prints, as data."""
 
-from pathlib import Path
-
-from fes_mj.inputs import read_toml
+from fes_mj.common.reading import DATA, read_toml
 from fes_mj.verification.case import Expected
 
-DATA = Path(__file__).parents[1] / "data"
 SIX_BARS = ("r1", "r2", "d1", "d2")
 
 

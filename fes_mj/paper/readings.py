@@ -7,15 +7,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fes_mj.arrays import FloatArray
-from fes_mj.design_file import load_design
-from fes_mj.errors import AssemblyError
-from fes_mj.geometry import grashof_margin, joint_ranges, require_assembly
+from fes_mj.common.arrays import FloatArray
+from fes_mj.common.errors import AssemblyError
+from fes_mj.common.markdown import Table
+from fes_mj.linkage.assembly import grashof_margin, joint_ranges, require_assembly
+from fes_mj.linkage.design_file import load_design
+from fes_mj.linkage.variables import LENGTHS, lengths
 from fes_mj.paper.captions import captioned
 from fes_mj.paper.identification import COUPLER_ANGLE, SEAT_ANGLE, identify, range_misfit
 from fes_mj.paper.printed import SIX_BARS, table1
-from fes_mj.table import Table
-from fes_mj.variables import LENGTHS, lengths
 
 
 class Reading(NamedTuple):

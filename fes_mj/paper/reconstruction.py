@@ -12,15 +12,15 @@ import numpy as np
 from scipy.optimize import minimize
 from scipy.special import ive
 
-from fes_mj.arrays import BoolArray, FloatArray
-from fes_mj.errors import InputError
-from fes_mj.fourier import HARMONICS, TERMS, fourier
-from fes_mj.joints import JOINTS
-from fes_mj.moments import GROUPS
+from fes_mj.common.arrays import BoolArray, FloatArray
+from fes_mj.common.errors import InputError
+from fes_mj.linkage.joints import JOINTS
+from fes_mj.moments.fourier import HARMONICS, TERMS, fourier
+from fes_mj.moments.joint_moments import GROUPS
+from fes_mj.moments.uncertainty import standard_deviation
 from fes_mj.paper.evidence import Evidence, functional, of_group
-from fes_mj.uncertainty import standard_deviation
 
-# What the Fourier series carries (fes_mj.fourier), and half a turn: the likelihood's one maximum lies between.
+# What the Fourier series carries (fes_mj.moments.fourier), and half a turn: the likelihood's one maximum lies between.
 SHORTEST_LENGTH, LONGEST_LENGTH = 0.5, 2.0
 # The text's highest moment is 20 N m. Without a limit, curves of 200 N m would swallow any misprint in the evidence.
 SMALLEST_AMPLITUDE, LARGEST_AMPLITUDE = 1.0, 40.0  # N m

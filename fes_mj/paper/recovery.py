@@ -2,12 +2,16 @@
 
 import numpy as np
 
-from fes_mj.arrays import FloatArray
-from fes_mj.design import Design
-from fes_mj.design_file import load_design
-from fes_mj.fourier import fourier
-from fes_mj.kinematics import solve
-from fes_mj.moments import GROUPS
+from fes_mj.common.arrays import FloatArray
+from fes_mj.common.markdown import Table
+from fes_mj.linkage.design import Design
+from fes_mj.linkage.design_file import load_design
+from fes_mj.linkage.kinematics import solve
+from fes_mj.linkage.variables import LENGTHS, replaced
+from fes_mj.moments.fourier import fourier
+from fes_mj.moments.joint_moments import GROUPS
+from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
+from fes_mj.moments.uncertainty import power_weights, with_sd
 from fes_mj.paper.captions import captioned
 from fes_mj.paper.evidence import functional, of_group
 from fes_mj.paper.identification import LENGTH_ROUNDING, inside_rounding
@@ -16,10 +20,6 @@ from fes_mj.paper.left_out import rms
 from fes_mj.paper.printed import SIX_BARS
 from fes_mj.paper.reconstruction import condition
 from fes_mj.paper.statements import load_statements
-from fes_mj.reference_tricycle import PAPER_TRICYCLE
-from fes_mj.table import Table
-from fes_mj.uncertainty import power_weights, with_sd
-from fes_mj.variables import LENGTHS, replaced
 
 _SEED = 2022
 

@@ -8,8 +8,12 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
-from fes_mj.errors import InputError
-from fes_mj.files import json_text, require_replaceable, write_files
+from fes_mj.common.errors import InputError
+from fes_mj.common.markdown import Table
+from fes_mj.common.provenance import provenance
+from fes_mj.common.reading import DATA
+from fes_mj.common.style import STYLE
+from fes_mj.common.writing import json_text, require_replaceable, write_files
 from fes_mj.paper import (
     calibration,
     error_budget,
@@ -26,11 +30,7 @@ from fes_mj.paper import (
 from fes_mj.paper.captions import figure_section
 from fes_mj.paper.evidence import load_evidence
 from fes_mj.paper.known import Known, known
-from fes_mj.paper.printed import DATA
 from fes_mj.paper.runs import RUNS, Runs, run_all
-from fes_mj.provenance import provenance
-from fes_mj.style import STYLE
-from fes_mj.table import Table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -11,19 +11,19 @@ from typing import Any
 
 import numpy as np
 
-from fes_mj import reduced
-from fes_mj.design import Design
-from fes_mj.design_file import DESIGNS, load_design
-from fes_mj.moment_samples import sampled_moments
-from fes_mj.moments import GROUPS, JointMoments
-from fes_mj.moments_file import load_moments
+from fes_mj.common.markdown import Table
+from fes_mj.common.units import KMH, RPM
+from fes_mj.linkage.design import Design
+from fes_mj.linkage.design_file import DESIGNS, load_design
+from fes_mj.moments.files import load_moments
+from fes_mj.moments.joint_moments import GROUPS, JointMoments
+from fes_mj.moments.samples import sampled_moments
+from fes_mj.moments.torque_velocity import drawn_relations, load_torque_velocity
+from fes_mj.moments.uncertainty import with_sd
 from fes_mj.paper.captions import captioned
-from fes_mj.ride import TRANSMISSIONS, Ride, Road, Trace, balancing_slope
-from fes_mj.starts import Starts, starts
-from fes_mj.table import Table
-from fes_mj.torque_velocity import drawn_relations, load_torque_velocity
-from fes_mj.uncertainty import with_sd
-from fes_mj.units import KMH, RPM
+from fes_mj.riding import reduced
+from fes_mj.riding.ride import TRANSMISSIONS, Ride, Road, Trace, balancing_slope
+from fes_mj.riding.starts import Starts, starts
 
 DRAWS = 48  # of muscles; a standard deviation of so many is known to a tenth of itself
 START_DRAWS = 12  # of these, in the search for starts, which takes some thirty times as long as a ride; to a fifth

@@ -5,15 +5,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fes_mj.crosscheck import Case
-from fes_mj.design_file import DESIGNS, load_design
-from fes_mj.errors import AssemblyError
-from fes_mj.moments import GROUPS
-from fes_mj.moments_file import load_moments
+from fes_mj.common.errors import AssemblyError
+from fes_mj.crosscheck.turn_case import Case
+from fes_mj.fit.population import Study, study_population
+from fes_mj.linkage.design_file import DESIGNS, load_design
+from fes_mj.moments.files import load_moments
+from fes_mj.moments.joint_moments import GROUPS
+from fes_mj.moments.torque_velocity import load_torque_velocity
 from fes_mj.paper import error_budget, riding
-from fes_mj.population import Study, study_population
-from fes_mj.statics import QuasiStatic, quasi_static
-from fes_mj.torque_velocity import load_torque_velocity
+from fes_mj.statics.turn import QuasiStatic, quasi_static
 
 RUNS = (2 * len(GROUPS) + 1) * len(DESIGNS) + riding.STEPS + error_budget.STEPS  # simulations, populations, rides ...
 

@@ -12,19 +12,18 @@ from itertools import islice
 
 import numpy as np
 
-from fes_mj.arrays import BoolArray, FloatArray
-from fes_mj.design_file import load_design
-from fes_mj.errors import InputError
-from fes_mj.fourier import TERMS
-from fes_mj.inputs import read_toml
-from fes_mj.joints import JOINTS
-from fes_mj.kinematics import solve
-from fes_mj.moments import GROUPS
+from fes_mj.common.arrays import BoolArray, FloatArray
+from fes_mj.common.errors import InputError
+from fes_mj.common.reading import DATA, read_toml
+from fes_mj.linkage.design_file import load_design
+from fes_mj.linkage.joints import JOINTS
+from fes_mj.linkage.kinematics import solve
+from fes_mj.moments.fourier import TERMS
+from fes_mj.moments.joint_moments import GROUPS
+from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
+from fes_mj.moments.uncertainty import power_rows
 from fes_mj.paper.evidence import Evidence
-from fes_mj.paper.printed import DATA
 from fes_mj.paper.reconstruction import Hyperparameters, draw
-from fes_mj.reference_tricycle import PAPER_TRICYCLE
-from fes_mj.uncertainty import power_rows
 
 TEXT = DATA / "text.toml"
 HIGH = 0.5  # of the highest power: what reaches it is a high peak; the width of a peak is usually taken there

@@ -4,16 +4,16 @@ from itertools import product
 
 import numpy as np
 
-from fes_mj.arrays import FloatArray
-from fes_mj.cycles import cycles, uncertain_table
-from fes_mj.design import Design
-from fes_mj.design_file import DIMENSIONS, load_design
-from fes_mj.moments import JointMoments
-from fes_mj.moments_file import load_moments
+from fes_mj.common.arrays import FloatArray
+from fes_mj.common.markdown import Table
+from fes_mj.linkage.design import Design
+from fes_mj.linkage.design_file import DIMENSIONS, load_design
+from fes_mj.linkage.variables import LENGTHS, lengths, with_lengths
+from fes_mj.moments.files import load_moments
+from fes_mj.moments.joint_moments import JointMoments
+from fes_mj.moments.uncertainty import with_sd
 from fes_mj.paper.captions import captioned
-from fes_mj.table import Table
-from fes_mj.uncertainty import with_sd
-from fes_mj.variables import LENGTHS, lengths, with_lengths
+from fes_mj.statics.cycles import cycles, uncertain_table
 
 # Each design with the group that it was made for (Section 7; docs/errata.md, E14).
 MADE_FOR = {"r1": "p1p2", "r2": "p1p3", "d1": "p1p2", "d2": "p1p3"}

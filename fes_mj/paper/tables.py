@@ -2,13 +2,13 @@
 
 import numpy as np
 
-from fes_mj.moments import GROUPS
+from fes_mj.common.markdown import Table
+from fes_mj.common.units import RPM
+from fes_mj.moments.joint_moments import GROUPS
 from fes_mj.paper.captions import captioned
 from fes_mj.paper.printed import SIX_BARS, table1
 from fes_mj.paper.runs import Runs, joint_speed
-from fes_mj.statics import ratio_sd
-from fes_mj.table import Table
-from fes_mj.units import RPM
+from fes_mj.statics.turn import ratio_sd
 
 POWER_ROUNDING = 0.005  # W, Table 1 is rounded to 0.01 W
 

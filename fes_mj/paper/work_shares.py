@@ -4,17 +4,17 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fes_mj.arrays import FloatArray
-from fes_mj.fourier import fourier
-from fes_mj.inputs import read_toml
-from fes_mj.joints import PerJoint
+from fes_mj.common.arrays import FloatArray
+from fes_mj.common.markdown import Table
+from fes_mj.common.reading import read_toml
+from fes_mj.linkage.joints import PerJoint
+from fes_mj.moments.fourier import fourier
+from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
+from fes_mj.moments.uncertainty import with_sd
 from fes_mj.paper.captions import captioned
 from fes_mj.paper.evidence import own_leg_motion
 from fes_mj.paper.known import STAGES, Known
 from fes_mj.paper.statements import TEXT
-from fes_mj.reference_tricycle import PAPER_TRICYCLE
-from fes_mj.table import Table
-from fes_mj.uncertainty import with_sd
 
 MUSCLES = {
     "knee extensors": ("knee", 1),

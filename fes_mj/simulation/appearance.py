@@ -11,11 +11,12 @@ from typing import Any, NamedTuple, TypeAlias
 import mujoco
 import numpy as np
 
-from fes_mj import kinematics
-from fes_mj.design import BODIES, Design, Leg
-from fes_mj.geometry import bounding_box
-from fes_mj.segments import foot_points
-from fes_mj.style import COLOURS, LINKS, rgb
+from fes_mj.common.style import COLOURS, LINKS, rgb
+from fes_mj.linkage import kinematics
+from fes_mj.linkage.assembly import bounding_box
+from fes_mj.linkage.design import BODIES, Design
+from fes_mj.linkage.legs import Leg
+from fes_mj.linkage.segments import foot_points
 
 Spec: TypeAlias = Any  # mujoco.MjSpec and its elements, which have no types
 

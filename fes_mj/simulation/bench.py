@@ -7,18 +7,19 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from fes_mj.arrays import ComplexArray, FloatArray
-from fes_mj.design import LEGS, Design, Leg
-from fes_mj.extrapolation import require_motion
-from fes_mj.joints import JOINTS, PerJoint
-from fes_mj.moments import JointMoments
-from fes_mj.segments import GRAVITY
+from fes_mj.common.arrays import ComplexArray, FloatArray
+from fes_mj.linkage.design import Design
+from fes_mj.linkage.joints import JOINTS, PerJoint
+from fes_mj.linkage.legs import LEGS, Leg
+from fes_mj.linkage.segments import GRAVITY
+from fes_mj.moments.joint_moments import JointMoments
+from fes_mj.moments.torque_map import TorqueMap, torque_map
 from fes_mj.simulation.appearance import Spec
 from fes_mj.simulation.mjcf import build_mjcf
 from fes_mj.simulation.sensors import Sensors
 from fes_mj.simulation.stepping import PRE_ROLL, LoopMaker, Run, feedback_loop, run_loop
-from fes_mj.time_step import steps_per_turn
-from fes_mj.torque_map import TorqueMap, torque_map
+from fes_mj.simulation.time_step import steps_per_turn
+from fes_mj.statics.extrapolation import require_motion
 
 
 @dataclass(frozen=True)

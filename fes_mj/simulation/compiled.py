@@ -10,11 +10,11 @@ from typing import Any, TypeAlias
 import mujoco
 import numpy as np
 
-from fes_mj.arrays import FloatArray
-from fes_mj.errors import require_extra
-from fes_mj.joints import JOINTS
+from fes_mj.common.arrays import FloatArray
+from fes_mj.common.errors import require_extra
+from fes_mj.linkage.joints import JOINTS
+from fes_mj.moments.torque_map import TorqueMap, scalar_map
 from fes_mj.simulation.stepping import FORCE_EVERY, Loop, Records, drive_addresses
-from fes_mj.torque_map import TorqueMap, scalar_map
 
 # Given what makes machine code of Python functions: the function that sets the controls before each step, called with
 # arguments of its own, the positions, the speeds at the positions' own time, and the controls.

@@ -9,15 +9,16 @@ from xml.sax.saxutils import escape
 
 import numpy as np
 
-from fes_mj import kinematics
-from fes_mj.design import LEGS, Design
-from fes_mj.files import csv_text
-from fes_mj.geometry import FROM_TOP, degrees_from_top
-from fes_mj.inverse_dynamics import crank_moment
-from fes_mj.moments import JointMoments
+from fes_mj.common.writing import csv_text
+from fes_mj.linkage import kinematics
+from fes_mj.linkage.assembly import FROM_TOP, degrees_from_top
+from fes_mj.linkage.design import Design
+from fes_mj.linkage.legs import LEGS
+from fes_mj.moments.joint_moments import JointMoments
+from fes_mj.moments.torque_map import torque_map
 from fes_mj.simulation.appearance import FIELD_OF_VIEW, Spec, framing, lowest_point
 from fes_mj.simulation.road_mjcf import ROAD
-from fes_mj.torque_map import torque_map
+from fes_mj.statics.inverse_dynamics import crank_moment
 
 # What of each file stands at its beginning (files.MARKED) and in nobody else's file.
 MARKS = {"model": "Written by fes_mj", "scene": ' scene">\n  <include file="', "table": ",quasi_static_crank_Nm\n"}

@@ -11,16 +11,17 @@ from typing import Any, Literal
 import mujoco
 import numpy as np
 
-from fes_mj import kinematics
-from fes_mj.design import LEGS, Design, Leg
-from fes_mj.errors import InputError
-from fes_mj.geometry import require_assembly
-from fes_mj.kinematics import Motion
-from fes_mj.segments import GRAVITY, Inertia, combine, inertias
+from fes_mj.common.errors import InputError
+from fes_mj.common.units import RPM
+from fes_mj.linkage import kinematics
+from fes_mj.linkage.assembly import require_assembly
+from fes_mj.linkage.design import Design
+from fes_mj.linkage.kinematics import Motion
+from fes_mj.linkage.legs import LEGS, Leg
+from fes_mj.linkage.segments import GRAVITY, Inertia, combine, inertias
 from fes_mj.simulation import appearance
 from fes_mj.simulation.appearance import Spec
-from fes_mj.time_step import loose_steps, steps_per_turn
-from fes_mj.units import RPM
+from fes_mj.simulation.time_step import loose_steps, steps_per_turn
 
 INTEGRATORS = {
     "discrete": mujoco.mjtIntegrator.mjINT_DISCRETE,

@@ -8,15 +8,15 @@ import mujoco
 import numpy as np
 from scipy.integrate import cumulative_trapezoid
 
-from fes_mj.arrays import FloatArray
-from fes_mj.design import TWO_LEGS
-from fes_mj.extrapolation import require_motion
-from fes_mj.ride import Ride, Trace
+from fes_mj.common.arrays import FloatArray
+from fes_mj.linkage.legs import TWO_LEGS
+from fes_mj.riding.ride import Ride, Trace
 from fes_mj.simulation.bench import joint_drives
 from fes_mj.simulation.road_control import road_loop
 from fes_mj.simulation.road_mjcf import DRIVETRAIN, ROAD, TIMESTEP, build_road_mjcf, start_state
 from fes_mj.simulation.sensors import Sensors
 from fes_mj.simulation.stepping import PRE_ROLL, Loop, Run, run_loop
+from fes_mj.statics.extrapolation import require_motion
 
 
 @dataclass(frozen=True, eq=False)

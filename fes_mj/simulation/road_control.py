@@ -8,14 +8,14 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from fes_mj.design import TWO_LEGS
-from fes_mj.drive import POINTS, drive
-from fes_mj.joints import JOINTS
-from fes_mj.ride import Ride
+from fes_mj.linkage.joints import JOINTS
+from fes_mj.linkage.legs import TWO_LEGS
+from fes_mj.moments.drive import POINTS, drive
+from fes_mj.moments.torque_velocity import AT_ANY_SPEED, hill_factor
+from fes_mj.riding.ride import Ride
 from fes_mj.simulation.compiled import compiled_controlled_loop
 from fes_mj.simulation.road_mjcf import ROAD
 from fes_mj.simulation.stepping import Loop, controlled_loop, drive_addresses
-from fes_mj.torque_velocity import AT_ANY_SPEED, hill_factor
 
 
 def road_loop(ride: Ride) -> Loop:

@@ -6,10 +6,10 @@ from typing import Literal
 import mujoco
 import numpy as np
 
-from fes_mj import kinematics
-from fes_mj.design import TWO_LEGS
-from fes_mj.ride import Ride
-from fes_mj.segments import GRAVITY
+from fes_mj.linkage import kinematics
+from fes_mj.linkage.legs import TWO_LEGS
+from fes_mj.linkage.segments import GRAVITY
+from fes_mj.riding.ride import Ride
 from fes_mj.simulation.appearance import Spec
 from fes_mj.simulation.bench import joint_drives
 from fes_mj.simulation.mjcf import (

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fes_mj.arrays import FloatArray
+from fes_mj.common.arrays import FloatArray
 
 
 class Sensors:

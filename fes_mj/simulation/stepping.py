@@ -7,9 +7,9 @@ from typing import Any, NamedTuple, TypeAlias, cast
 import mujoco
 import numpy as np
 
-from fes_mj.arrays import FloatArray
-from fes_mj.errors import UnstableError
-from fes_mj.torque_map import TorqueMap
+from fes_mj.common.arrays import FloatArray
+from fes_mj.common.errors import UnstableError
+from fes_mj.moments.torque_map import TorqueMap
 
 # An exact pose with exact velocities still rings for a few steps, while the stiff loops find their forces.
 PRE_ROLL = 20  # steps

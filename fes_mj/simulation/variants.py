@@ -7,18 +7,19 @@ from typing import Any
 
 import numpy as np
 
-from fes_mj.design import LEGS, TWO_LEGS, Design
-from fes_mj.errors import InputError
-from fes_mj.joints import JOINTS
-from fes_mj.moments import JointMoments
-from fes_mj.ride import Ride
+from fes_mj.common.errors import InputError
+from fes_mj.common.units import RPM
+from fes_mj.linkage.design import Design
+from fes_mj.linkage.joints import JOINTS
+from fes_mj.linkage.legs import LEGS, TWO_LEGS
+from fes_mj.moments.joint_moments import JointMoments
+from fes_mj.moments.torque_map import torque_map
+from fes_mj.riding.ride import Ride
 from fes_mj.simulation.appearance import Spec
 from fes_mj.simulation.mjcf import INTEGRATORS, SERVO, build_mjcf
 from fes_mj.simulation.road_mjcf import build_road_mjcf
-from fes_mj.statics import quasi_static
-from fes_mj.time_step import steps_per_turn
-from fes_mj.torque_map import torque_map
-from fes_mj.units import RPM
+from fes_mj.simulation.time_step import steps_per_turn
+from fes_mj.statics.turn import quasi_static
 
 # Variant -> what it sets: what the crank meets (servo, if nothing is said), how the tricycle of the road is geared, or
 # an argument of build_mjcf. Several may be combined unless they set the same thing differently.

@@ -6,18 +6,18 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from fes_mj.characteristics import motion_characteristics, power_characteristics
-from fes_mj.cycles import Cycles, WorkTable, cycles, uncertain_table
-from fes_mj.design import Design
-from fes_mj.errors import InputError, UnstableError
-from fes_mj.joints import JOINTS
-from fes_mj.kinematics import solve
-from fes_mj.moments import JointMoments
-from fes_mj.statics import virtual_work
+from fes_mj.common.errors import InputError, UnstableError
+from fes_mj.common.units import RPM
+from fes_mj.linkage.design import Design
+from fes_mj.linkage.joints import JOINTS
+from fes_mj.linkage.kinematics import solve
+from fes_mj.linkage.variables import COMPONENTS, VARIABLES, replaced
+from fes_mj.moments.joint_moments import JointMoments
+from fes_mj.moments.torque_map import torque_map
+from fes_mj.statics.characteristics import motion_characteristics, power_characteristics
+from fes_mj.statics.cycles import Cycles, WorkTable, cycles, uncertain_table
+from fes_mj.statics.turn import virtual_work
 from fes_mj.sweep.study import NAMES, Study
-from fes_mj.torque_map import torque_map
-from fes_mj.units import RPM
-from fes_mj.variables import COMPONENTS, VARIABLES, replaced
 
 Columns: TypeAlias = dict[str, NDArray[Any]]
 

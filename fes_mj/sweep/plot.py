@@ -8,8 +8,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from fes_mj.files import replacing
-from fes_mj.style import STYLE
+from fes_mj.common.style import STYLE
+from fes_mj.common.writing import replacing
 from fes_mj.sweep.study import NAMES, label
 from fes_mj.sweep.sweep import Sweep
 

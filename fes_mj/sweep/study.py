@@ -8,15 +8,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fes_mj.arrays import FloatArray
-from fes_mj.design import Design
-from fes_mj.design_file import load_design
-from fes_mj.errors import InputError
-from fes_mj.inputs import Section, is_number, read_toml
-from fes_mj.moments import GROUPS, JointMoments
-from fes_mj.moments_file import load_moments, measured_files
-from fes_mj.time_step import LONGEST_TIMESTEP
-from fes_mj.variables import COMPONENTS
+from fes_mj.common.arrays import FloatArray
+from fes_mj.common.errors import InputError
+from fes_mj.common.reading import Section, is_number, read_toml
+from fes_mj.linkage.design import Design
+from fes_mj.linkage.design_file import load_design
+from fes_mj.linkage.variables import COMPONENTS
+from fes_mj.moments.files import load_moments, measured_files
+from fes_mj.moments.joint_moments import GROUPS, JointMoments
+from fes_mj.simulation.time_step import LONGEST_TIMESTEP
 
 ANALYSES = ("static", "dynamic")
 # A chunk is a task and a file: about a second of static, a minute of dynamic work.

@@ -10,12 +10,12 @@ from typing import Any
 
 import numpy as np
 
-from fes_mj.design_file import design_toml
-from fes_mj.errors import InputError, require_extra
-from fes_mj.files import make_folder, remove_leftovers, replacing, require_writable, write_text
-from fes_mj.inputs import read_json
-from fes_mj.parallel import HERE, Workers, run_tasks
-from fes_mj.provenance import digest
+from fes_mj.common.errors import InputError, require_extra
+from fes_mj.common.parallel import HERE, Workers, run_tasks
+from fes_mj.common.provenance import digest
+from fes_mj.common.reading import read_json
+from fes_mj.common.writing import make_folder, remove_leftovers, replacing, require_writable, write_text
+from fes_mj.linkage.design_file import design_toml
 from fes_mj.sweep.evaluation import column_types, evaluate
 from fes_mj.sweep.study import Study
 

@@ -5,9 +5,9 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, NamedTuple
 
-from fes_mj.crosscheck import Case
-from fes_mj.ride import TRANSMISSIONS, Ride
-from fes_mj.ride_case import RideCase
+from fes_mj.crosscheck.ride_case import RideCase
+from fes_mj.crosscheck.turn_case import Case
+from fes_mj.riding.ride import TRANSMISSIONS, Ride
 from fes_mj.verification.energy import Audit, audit
 from fes_mj.verification.references import Curves, differences, exact_curves
 from fes_mj.verification.refinement import Refinement, refine

@@ -4,14 +4,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fes_mj.arrays import FloatArray
-from fes_mj.crosscheck import Case
-from fes_mj.design import ONE_LEG
+from fes_mj.common.arrays import FloatArray
+from fes_mj.crosscheck.turn_case import Case
+from fes_mj.linkage.legs import ONE_LEG
 from fes_mj.simulation.bench import Energy, joint_drives
 from fes_mj.simulation.mjcf import SERVO
 from fes_mj.simulation.sensors import Sensors
 from fes_mj.simulation.stepping import recording_loop, run_loop
-from fes_mj.time_step import steps_per_turn
+from fes_mj.simulation.time_step import steps_per_turn
 
 
 @dataclass(frozen=True)

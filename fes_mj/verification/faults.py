@@ -9,9 +9,9 @@ from contextlib import suppress
 from dataclasses import fields
 from typing import Any, NamedTuple
 
-from fes_mj.checks import Check, definitions
-from fes_mj.design import Design
-from fes_mj.errors import AssemblyError
+from fes_mj.common.checks import Check, definitions
+from fes_mj.common.errors import AssemblyError
+from fes_mj.linkage.design import Design
 from fes_mj.verification.case import VerificationCase
 from fes_mj.verification.suite import FULL, QUICK, Stage, verify
 

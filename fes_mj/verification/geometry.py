@@ -5,12 +5,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fes_mj.arrays import BoolArray
-from fes_mj.checks import Check
-from fes_mj.crosscheck import Case
-from fes_mj.design import BODIES, BRANCHES
-from fes_mj.joints import JOINTS
-from fes_mj.kinematics import Motion, cross
+from fes_mj.common.arrays import BoolArray
+from fes_mj.common.checks import Check
+from fes_mj.crosscheck.turn_case import Case
+from fes_mj.linkage.design import BODIES, BRANCHES
+from fes_mj.linkage.joints import JOINTS
+from fes_mj.linkage.kinematics import Motion, cross
 
 # The catalogue is resolved to rounding by 512 points; linkages closer to a dead centre turn faster there.
 POINTS = 2048

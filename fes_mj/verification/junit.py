@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from xml.etree import ElementTree
 
-from fes_mj.checks import Check, definitions
+from fes_mj.common.checks import Check, definitions
 from fes_mj.verification.faults import Detection
 
 

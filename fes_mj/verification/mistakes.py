@@ -7,27 +7,26 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache, cached_property
-from pathlib import Path
 from typing import Any, TypeAlias
 
 import mujoco
 import numpy as np
 
-from fes_mj.arrays import FloatArray
-from fes_mj.crosscheck import Case
-from fes_mj.design import Design
-from fes_mj.inputs import read_toml
-from fes_mj.joints import PerJoint
-from fes_mj.kinematics import Jet, Motion, Rotation
-from fes_mj.reference_tricycle import PAPER_TRICYCLE
+from fes_mj.common.arrays import FloatArray
+from fes_mj.common.reading import DATA, read_toml
+from fes_mj.crosscheck.turn_case import Case
+from fes_mj.linkage.design import Design
+from fes_mj.linkage.joints import PerJoint
+from fes_mj.linkage.kinematics import Jet, Motion, Rotation
+from fes_mj.linkage.variables import ALL
+from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
+from fes_mj.moments.torque_map import GRID, TorqueMap
 from fes_mj.simulation.mjcf import SERVO, SERVO_GAIN
-from fes_mj.statics import equilibrium, joint_couples, moment_arm
-from fes_mj.torque_map import GRID, TorqueMap
-from fes_mj.variables import ALL
+from fes_mj.statics.turn import equilibrium, joint_couples, moment_arm
 from fes_mj.verification.faults import Fault
 
 Steps: TypeAlias = dict[str, Any]
-_FILE = Path(__file__).parents[1] / "data" / "faults.toml"
+_FILE = DATA / "faults.toml"
 
 
 def with_equilibrium(**options: Any) -> Steps:

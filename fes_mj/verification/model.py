@@ -5,13 +5,13 @@ import math
 import mujoco
 import numpy as np
 
-from fes_mj import kinematics
-from fes_mj.checks import Check
-from fes_mj.crosscheck import Case
-from fes_mj.joints import JOINTS
+from fes_mj.common.checks import Check
+from fes_mj.crosscheck.turn_case import Case
+from fes_mj.linkage import kinematics
+from fes_mj.linkage.joints import JOINTS
+from fes_mj.moments.torque_map import GRID, TABLE_SIZE
 from fes_mj.simulation.export import mjcf_text
 from fes_mj.simulation.mjcf import CUTS
-from fes_mj.torque_map import GRID, TABLE_SIZE
 
 # What a reader of the model file must get back.
 FIELDS = (

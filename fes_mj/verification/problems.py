@@ -16,10 +16,10 @@ import mujoco
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from fes_mj.arrays import ComplexArray, FloatArray
-from fes_mj.checks import Check, check
-from fes_mj.design import Design, Linkage, Rider
-from fes_mj.segments import GRAVITY, Inertia
+from fes_mj.common.arrays import ComplexArray, FloatArray
+from fes_mj.common.checks import Check, check
+from fes_mj.linkage.design import Design, Linkage, Rider
+from fes_mj.linkage.segments import GRAVITY, Inertia
 from fes_mj.simulation.appearance import Spec
 from fes_mj.simulation.mjcf import AXIS, LOOP_SOLIMP, add_body, build_mjcf, set_options
 from fes_mj.simulation.sensors import Sensors

@@ -9,13 +9,13 @@ from typing import TypeAlias
 import mujoco
 import numpy as np
 
-from fes_mj.arrays import FloatArray
-from fes_mj.checks import Check
-from fes_mj.crosscheck import Case
-from fes_mj.joints import PerJoint
-from fes_mj.kinematics import Motion
+from fes_mj.common.arrays import FloatArray
+from fes_mj.common.checks import Check
+from fes_mj.crosscheck.turn_case import Case
+from fes_mj.linkage.joints import PerJoint
+from fes_mj.linkage.kinematics import Motion
 from fes_mj.simulation.mjcf import joint_motion
-from fes_mj.statics import virtual_work
+from fes_mj.statics.turn import virtual_work
 
 Curves: TypeAlias = dict[str, FloatArray]  # method -> crank moment, N m, shape (angles,)
 POINTS = 360

@@ -5,8 +5,8 @@ import math
 from collections.abc import Sequence
 from pathlib import Path
 
-from fes_mj.checks import Check, definitions
-from fes_mj.provenance import provenance
+from fes_mj.common.checks import Check, definitions
+from fes_mj.common.provenance import provenance
 from fes_mj.verification.case import VerificationCase
 from fes_mj.verification.faults import Detection
 from fes_mj.verification.problems import compare_chains

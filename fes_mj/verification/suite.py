@@ -6,10 +6,10 @@ from typing import TypeAlias
 
 import numpy as np
 
-from fes_mj.arrays import FloatArray
-from fes_mj.checks import Check, check
-from fes_mj.errors import UnstableError
-from fes_mj.geometry import joint_ranges
+from fes_mj.common.arrays import FloatArray
+from fes_mj.common.checks import Check, check
+from fes_mj.common.errors import UnstableError
+from fes_mj.linkage.assembly import joint_ranges
 from fes_mj.simulation.mjcf import SERVO_GAIN
 from fes_mj.verification.case import VerificationCase
 from fes_mj.verification.geometry import geometry_checks

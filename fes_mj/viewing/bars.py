@@ -5,11 +5,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from fes_mj.arrays import ComplexArray
-from fes_mj.design import Design
-from fes_mj.segments import foot_points
+from fes_mj.common.arrays import ComplexArray
+from fes_mj.common.style import hex_colour
+from fes_mj.linkage.design import Design
+from fes_mj.linkage.segments import foot_points
 from fes_mj.simulation.appearance import BACKREST, PARTS, SEAT_DEPTH, SEAT_LENGTH
-from fes_mj.style import hex_colour
 
 _CAP = np.exp(1j * np.linspace(-np.pi / 2, np.pi / 2, 17))  # half of a circle
 

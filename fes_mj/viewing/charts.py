@@ -10,11 +10,11 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from fes_mj.arrays import FloatArray
-from fes_mj.crosscheck import Case
-from fes_mj.design import BODIES, Design
-from fes_mj.kinematics import FULL_TURN, positions, solve
-from fes_mj.style import COLOURS, CRANK_LABEL, INK, LINKS, STYLE, X_LABEL, literal
+from fes_mj.common.arrays import FloatArray
+from fes_mj.common.style import COLOURS, CRANK_LABEL, INK, LINKS, STYLE, X_LABEL, literal
+from fes_mj.crosscheck.turn_case import Case
+from fes_mj.linkage.design import BODIES, Design
+from fes_mj.linkage.kinematics import FULL_TURN, positions, solve
 from fes_mj.viewing.bars import bars
 
 PLOTTED = 720  # points of a curve at most

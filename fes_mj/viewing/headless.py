@@ -8,7 +8,7 @@ from importlib import import_module
 from importlib.metadata import PackageNotFoundError, files
 from pathlib import Path
 
-from fes_mj.errors import MissingPartError
+from fes_mj.common.errors import MissingPartError
 
 # In the order of speed; each is a module of mujoco.
 _BACKENDS = {"linux": ("egl", "osmesa"), "darwin": ("cgl",)}.get(sys.platform, ("glfw",))

@@ -7,12 +7,12 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from fes_mj.files import replacing
-from fes_mj.fourier import WIDEST_GAP, fourier, gaps
-from fes_mj.joints import JOINTS
-from fes_mj.moments_file import Measurement
-from fes_mj.style import COLOURS, FAINT, STYLE, literal
-from fes_mj.torque_map import torque_map
+from fes_mj.common.style import COLOURS, FAINT, STYLE, literal
+from fes_mj.common.writing import replacing
+from fes_mj.linkage.joints import JOINTS
+from fes_mj.moments.files import Measurement
+from fes_mj.moments.fourier import WIDEST_GAP, fourier, gaps
+from fes_mj.moments.torque_map import torque_map
 from fes_mj.viewing.charts import any_letters
 
 _SAMPLES = 2000  # of a turn that are drawn at most

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from fes_mj.errors import require_extra
+from fes_mj.common.errors import require_extra
 
 
 def require_page_packages() -> None:

@@ -10,9 +10,9 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from PIL import Image, ImageDraw
 
-from fes_mj.arrays import Picture
-from fes_mj.design import Design
-from fes_mj.style import BAD, FAINT, GOOD, INK, STYLE, literal
+from fes_mj.common.arrays import Picture
+from fes_mj.common.style import BAD, FAINT, GOOD, INK, STYLE, literal
+from fes_mj.linkage.design import Design
 from fes_mj.viewing.charts import any_letters
 
 _DPI = 100

@@ -7,10 +7,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from fes_mj.arrays import FloatArray
-from fes_mj.design import Rider
-from fes_mj.population import PowerMap, Study
-from fes_mj.style import INK, literal
+from fes_mj.common.arrays import FloatArray
+from fes_mj.common.style import INK, literal
+from fes_mj.fit.population import PowerMap, Study
+from fes_mj.linkage.design import Rider
 
 _PERCENTILES = (5, 50, 95)
 _MARKERS = {"men": "s", "women": "o"}

@@ -4,10 +4,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from fes_mj.arrays import Picture
-from fes_mj.crosscheck import Case
-from fes_mj.style import COLOURS, INK
-from fes_mj.units import RPM
+from fes_mj.common.arrays import Picture
+from fes_mj.common.style import COLOURS, INK
+from fes_mj.common.units import RPM
+from fes_mj.crosscheck.turn_case import Case
 from fes_mj.viewing.charts import plot_power
 from fes_mj.viewing.panel import Panel, write_title, write_verdict
 

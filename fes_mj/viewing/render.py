@@ -7,11 +7,11 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from fes_mj.arrays import IntArray, Picture
-from fes_mj.console import progress_bar
-from fes_mj.crosscheck import Case
-from fes_mj.errors import InputError, MissingPartError, require_extra
-from fes_mj.files import replacing
+from fes_mj.common.arrays import IntArray, Picture
+from fes_mj.common.console import progress_bar
+from fes_mj.common.errors import InputError, MissingPartError, require_extra
+from fes_mj.common.writing import replacing
+from fes_mj.crosscheck.turn_case import Case
 from fes_mj.simulation.bench import Simulation
 from fes_mj.simulation.mjcf import build_mjcf
 from fes_mj.viewing.headless import use_offscreen_gl

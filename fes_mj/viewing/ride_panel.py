@@ -4,10 +4,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from fes_mj.arrays import Picture
-from fes_mj.ride_case import RideCase
-from fes_mj.style import COLOURS
-from fes_mj.units import KMH
+from fes_mj.common.arrays import Picture
+from fes_mj.common.style import COLOURS
+from fes_mj.common.units import KMH
+from fes_mj.crosscheck.ride_case import RideCase
 from fes_mj.viewing.panel import Panel, write_title, write_verdict
 
 _SMOOTH = 0.02  # s over which power is drawn

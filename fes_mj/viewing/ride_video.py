@@ -7,8 +7,8 @@ from pathlib import Path
 import mujoco
 import numpy as np
 
-from fes_mj.arrays import IntArray, Picture
-from fes_mj.ride_case import RideCase
+from fes_mj.common.arrays import IntArray, Picture
+from fes_mj.crosscheck.ride_case import RideCase
 from fes_mj.simulation.appearance import Spec, lowest_point
 from fes_mj.simulation.road import RoadRun
 from fes_mj.simulation.road_mjcf import build_road_mjcf

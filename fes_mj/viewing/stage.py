@@ -7,13 +7,14 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from fes_mj import kinematics
-from fes_mj.arrays import ComplexArray, Picture
-from fes_mj.design import LEGS, Design, Leg
-from fes_mj.geometry import bounding_box
-from fes_mj.segments import foot_points
+from fes_mj.common.arrays import ComplexArray, Picture
+from fes_mj.common.style import FAINT, INK, hex_colour
+from fes_mj.linkage import kinematics
+from fes_mj.linkage.assembly import bounding_box
+from fes_mj.linkage.design import Design
+from fes_mj.linkage.legs import LEGS, Leg
+from fes_mj.linkage.segments import foot_points
 from fes_mj.simulation.appearance import BACKREST, PARTS, SEAT_DEPTH, SEAT_LENGTH, Spec
-from fes_mj.style import FAINT, INK, hex_colour
 
 SIDE = 720  # pixels; pictures are square
 # Drawn so many times as large and reduced, without MuJoCo's own smoothing of edges, which takes longer.

@@ -4,9 +4,9 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
-from fes_mj.starts import Starts
-from fes_mj.style import BAD, FAINT, GOOD, INK, STYLE, literal
-from fes_mj.units import KMH
+from fes_mj.common.style import BAD, FAINT, GOOD, INK, STYLE, literal
+from fes_mj.common.units import KMH
+from fes_mj.riding.starts import Starts
 from fes_mj.viewing.charts import svg_text
 
 MARK = "<!-- Written by fes_mj: starts from rest -->"

@@ -12,12 +12,12 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from fes_mj.design import Design
-from fes_mj.files import replacing
-from fes_mj.geometry import top_dead_centre
-from fes_mj.stimulation import CORE, MUSCLES, Window
-from fes_mj.style import FAINT, INK, SERIES, STYLE, literal
-from fes_mj.units import RPM
+from fes_mj.common.style import FAINT, INK, SERIES, STYLE, literal
+from fes_mj.common.units import RPM
+from fes_mj.common.writing import replacing
+from fes_mj.linkage.assembly import top_dead_centre
+from fes_mj.linkage.design import Design
+from fes_mj.riding.stimulation import CORE, MUSCLES, Window
 from fes_mj.viewing.charts import any_letters
 
 _RING, _WIDTH = 0.28, 0.11  # distance of two rings; of the band of a window, beside that of its stimulation

@@ -7,14 +7,15 @@ import glfw
 import mujoco
 import mujoco.viewer
 
-from fes_mj.design import TWO_LEGS, Design
-from fes_mj.errors import MissingPartError
-from fes_mj.moments import JointMoments
+from fes_mj.common.errors import MissingPartError
+from fes_mj.linkage.design import Design
+from fes_mj.linkage.legs import TWO_LEGS
+from fes_mj.moments.joint_moments import JointMoments
+from fes_mj.moments.torque_map import torque_map
 from fes_mj.simulation.bench import joint_drives
 from fes_mj.simulation.export import mjcf_text, scene_text
 from fes_mj.simulation.mjcf import build_mjcf
 from fes_mj.simulation.stepping import drive_addresses
-from fes_mj.torque_map import torque_map
 
 
 def show(design: Design, moments: JointMoments, cadence: float) -> None:

@@ -13,8 +13,8 @@ import fes_mj
 from fes_mj.budget.budget import Spread, error_budget, powers, summary, together, unknowns
 from fes_mj.budget.power import UncertainPower
 from fes_mj.budget.unknowns import EXTRAPOLATION, LAG, MASSES, MOMENTS, RIDER, SPEED, priors
-from fes_mj.moments import JointMoments
-from fes_mj.statics import QuasiStatic, quasi_static
+from fes_mj.moments.joint_moments import JointMoments
+from fes_mj.statics.turn import QuasiStatic, quasi_static
 
 ALL = np.arange(1000)
 

@@ -6,19 +6,19 @@ import numpy as np
 import pytest
 
 import fes_mj
-from fes_mj.arrays import FloatArray
 from fes_mj.budget.power import UncertainPower
 from fes_mj.budget.unknowns import DIMENSIONS, EXTRAPOLATION, LAG, MOMENTS, RIDER, SPEED
-from fes_mj.drive import POINTS, drive
-from fes_mj.errors import AssemblyError
-from fes_mj.geometry import require_assembly
-from fes_mj.inverse_dynamics import crank_moment
-from fes_mj.joints import JOINTS
-from fes_mj.moment_samples import moments_of
-from fes_mj.moments import JointMoments
-from fes_mj.statics import quasi_static
-from fes_mj.torque_velocity import TorqueVelocity, load_torque_velocity
-from fes_mj.variables import replaced
+from fes_mj.common.arrays import FloatArray
+from fes_mj.common.errors import AssemblyError
+from fes_mj.linkage.assembly import require_assembly
+from fes_mj.linkage.joints import JOINTS
+from fes_mj.linkage.variables import replaced
+from fes_mj.moments.drive import POINTS, drive
+from fes_mj.moments.joint_moments import JointMoments
+from fes_mj.moments.samples import moments_of
+from fes_mj.moments.torque_velocity import TorqueVelocity, load_torque_velocity
+from fes_mj.statics.inverse_dynamics import crank_moment
+from fes_mj.statics.turn import quasi_static
 
 COUNT = 40
 ROW = np.array([17])
@@ -76,7 +76,7 @@ def answer(command: FloatArray, lag_angle: float) -> FloatArray:
 @pytest.mark.parametrize("name", ["r1", "d1"])
 @pytest.mark.parametrize("relation", [None, "hill"])
 def test_a_lag_is_the_answer_to_what_riding_commands(name: str, relation: str | None) -> None:
-    """The command of fes_mj.drive, timed ahead as theory says, integrated over crank angle at constant speed."""
+    """The command of moments.drive, timed ahead as theory says, integrated over crank angle at constant speed."""
     hill = load_torque_velocity(relation) if relation else None
     moments = replace(fes_mj.load_moments(), torque_velocity=hill)
     power = uncertain(name, moments)

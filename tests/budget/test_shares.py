@@ -5,9 +5,9 @@ import sys
 import numpy as np
 import pytest
 
-from fes_mj.arrays import FloatArray, IntArray
 from fes_mj.budget.shares import shares
-from fes_mj.errors import MissingPartError
+from fes_mj.common.arrays import FloatArray, IntArray
+from fes_mj.common.errors import MissingPartError
 
 COUNT = 500
 NAMES = ("one", "two", "three")

@@ -8,14 +8,14 @@ import pytest
 
 import fes_mj
 from fes_mj.budget.unknowns import LAG, MASSES, Realisations, priors, realisations
-from fes_mj.geometry import joint_ranges
-from fes_mj.kinematics import FULL_TURN
-from fes_mj.moment_samples import sampled_coefficients
+from fes_mj.common.units import RPM
+from fes_mj.linkage.assembly import joint_ranges
+from fes_mj.linkage.kinematics import FULL_TURN
+from fes_mj.linkage.variables import LENGTHS, component, replaced
+from fes_mj.moments.samples import sampled_coefficients
 from fes_mj.paper.identification import LENGTH_ROUNDING
 from fes_mj.paper.printed import SIX_BARS, table1
-from fes_mj.units import RPM
-from fes_mj.variables import LENGTHS, component, replaced
-from tests.test_design_file import written
+from tests.linkage.test_design_file import written
 
 COUNT = 1000
 

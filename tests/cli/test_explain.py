@@ -2,8 +2,8 @@
 
 import pytest
 
-from fes_mj.checks import definitions
 from fes_mj.cli.app import run
+from fes_mj.common.checks import definitions
 from tests.cli.conftest import answer
 
 

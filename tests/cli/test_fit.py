@@ -42,7 +42,7 @@ def test_not_fitting_is_a_result_and_writes_nothing(tmp_path: Path, capsys: pyte
 @pytest.mark.long
 def test_a_population(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("matplotlib")
-    monkeypatch.setattr("fes_mj.population._NODES", 3)  # a coarse map, in a second
+    monkeypatch.setattr("fes_mj.fit.population._NODES", 3)  # a coarse map, in a second
     plot = tmp_path / "who.png"
     code, out, err = result(capsys, "fit", "r2", "--population", "--samples", "10", "--plot", str(plot), "--json")
     content = json.loads(out)

@@ -13,8 +13,8 @@ from pathlib import Path
 import pytest
 
 from fes_mj.cli.app import run
-from fes_mj.design import BRANCHES
-from fes_mj.design_file import DESIGNS
+from fes_mj.linkage.design import BRANCHES
+from fes_mj.linkage.design_file import DESIGNS
 
 DATA = Path(__file__).parents[2] / "fes_mj" / "data"
 EXAMPLES = Path(__file__).parents[2] / "examples"

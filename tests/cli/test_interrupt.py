@@ -18,7 +18,7 @@ WRAPS = """
 import ctypes, signal, sys
 from fes_mj import cli
 from fes_mj.cli import app
-from fes_mj.errors import InputError
+from fes_mj.common.errors import InputError
 
 kind, number = eval(sys.argv[1]), int(sys.argv[2])
 del sys.argv[1:3]
@@ -88,7 +88,7 @@ def test_a_kill_in_the_middle_of_writing_leaves_the_old_file(tmp_path: Path) -> 
     target.write_text("old")
     script = (
         "import os, signal, sys, pathlib\n"
-        "from fes_mj.files import replacing\n"
+        "from fes_mj.common.writing import replacing\n"
         "with replacing(pathlib.Path(sys.argv[1])) as beside:\n"
         "    beside.write_text('half')\n"
         "    os.kill(os.getpid(), signal.SIGKILL)\n"

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from fes_mj.cli.app import run
-from fes_mj.files import csv_text
-from fes_mj.moments import COLUMNS
+from fes_mj.common.writing import csv_text
+from fes_mj.moments.joint_moments import COLUMNS
 from tests.cli.conftest import answer, result
 
 TRIAL = Path(__file__).parents[2] / "examples" / "trial" / "trial.toml"

@@ -10,8 +10,8 @@ import pytest
 
 import fes_mj
 from fes_mj.cli.app import run
-from fes_mj.design_file import design_toml
-from fes_mj.errors import UnstableError
+from fes_mj.common.errors import UnstableError
+from fes_mj.linkage.design_file import design_toml
 from fes_mj.optimization.findings import Findings
 from fes_mj.optimization.problem_file import DEFAULT
 from fes_mj.optimization.search import Result

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from tests.cli.conftest import result
-from tests.test_design_file import written
+from tests.linkage.test_design_file import written
 
 
 def test_torque_velocity_is_off_until_asked_for(capsys: pytest.CaptureFixture[str]) -> None:

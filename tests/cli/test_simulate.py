@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from fes_mj.cli.app import run
-from fes_mj.design_file import load_design
-from fes_mj.time_step import steps_per_turn
+from fes_mj.linkage.design_file import load_design
+from fes_mj.simulation.time_step import steps_per_turn
 from tests.cli.conftest import answer, result
 
 

@@ -8,7 +8,7 @@ import pytest
 
 import fes_mj
 from tests.cli.conftest import result
-from tests.test_design_file import written
+from tests.linkage.test_design_file import written
 
 ROCKER = ("rocker_pivot", "rocker_joint")
 

@@ -65,7 +65,7 @@ def test_no_scheduler_loses_nothing(
     study: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, address: str
 ) -> None:
     pytest.importorskip("distributed")
-    monkeypatch.setattr("fes_mj.parallel.PATIENCE", "1s")
+    monkeypatch.setattr("fes_mj.common.parallel.PATIENCE", "1s")
     folder = tmp_path / "out"
     sweep = Sweep(load_study(study), folder)
     sweep.run()

@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 from fes_mj.cli.app import run
-from fes_mj.design_file import load_design
-from fes_mj.time_step import steps_per_turn
+from fes_mj.linkage.design_file import load_design
+from fes_mj.simulation.time_step import steps_per_turn
 from tests.cli.conftest import answer
 
 
@@ -49,7 +49,7 @@ def test_a_run_that_breaks_down_is_a_verdict(
 
 def test_an_own_design_is_validated_without_the_paper(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     from fes_mj import load_design
-    from fes_mj.design_file import design_toml
+    from fes_mj.linkage.design_file import design_toml
 
     path = tmp_path / "own.toml"
     path.write_text(design_toml(load_design("r2")))

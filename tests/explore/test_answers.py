@@ -7,16 +7,16 @@ import mujoco
 import pytest
 
 import fes_mj
-from fes_mj.checks import Check
-from fes_mj.errors import AssemblyError, InputError
+from fes_mj.common.checks import Check
+from fes_mj.common.errors import AssemblyError, InputError
+from fes_mj.common.units import KMH
+from fes_mj.crosscheck.ride_case import RideCase
 from fes_mj.explore.answers import Answers
 from fes_mj.explore.dimensions import content_of, design_of
-from fes_mj.moments_file import moments_csv
-from fes_mj.ride import Ride
-from fes_mj.ride_case import RideCase
-from fes_mj.torque_velocity import load_torque_velocity
-from fes_mj.units import KMH
-from fes_mj.variables import replaced
+from fes_mj.linkage.variables import replaced
+from fes_mj.moments.files import moments_csv
+from fes_mj.moments.torque_velocity import load_torque_velocity
+from fes_mj.riding.ride import Ride
 
 D1 = content_of(fes_mj.load_design("d1"))
 
@@ -86,7 +86,7 @@ def test_ride_says_what_the_command_says(answers: Answers, monkeypatch: pytest.M
 
 
 def test_a_check_that_fails_is_named(answers: Answers, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("fes_mj.crosscheck.check", lambda name, value, _: Check(name, value, limit=0.0))
+    monkeypatch.setattr("fes_mj.crosscheck.turn_case.check", lambda name, value, _: Check(name, value, limit=0.0))
     run = answers.simulate({"design": D1, "moments": "p1p2"})
     assert not run["agrees"]
     assert run["verdict"].startswith("Dynamic and static do not agree (mean_power")

@@ -3,10 +3,10 @@
 import pytest
 
 import fes_mj
-from fes_mj.design import Design
-from fes_mj.errors import InputError
+from fes_mj.common.errors import InputError
 from fes_mj.explore.dimensions import content_of, design_of, dimensions
-from fes_mj.variables import component
+from fes_mj.linkage.design import Design
+from fes_mj.linkage.variables import component
 
 
 def test_there_and_back(design: Design) -> None:

@@ -4,9 +4,9 @@ import pytest
 
 import fes_mj
 from fes_mj.explore.limits import MARKS, broken
+from fes_mj.linkage.variables import replaced
 from fes_mj.optimization.problem import make_problem
-from fes_mj.statics import quasi_static
-from fes_mj.variables import replaced
+from fes_mj.statics.turn import quasi_static
 
 
 def found(name: str, **changes: float) -> set[str]:

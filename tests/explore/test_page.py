@@ -10,12 +10,12 @@ import pytest
 
 import fes_mj
 from fes_mj.cli.app import run
-from fes_mj.design_file import design_toml
 from fes_mj.explore.answers import Answers
 from fes_mj.explore.server import Server
 from fes_mj.explore.turn import POINTS
-from fes_mj.statics import quasi_static
-from fes_mj.variables import replaced
+from fes_mj.linkage.design_file import design_toml
+from fes_mj.linkage.variables import replaced
+from fes_mj.statics.turn import quasi_static
 from tests.browser import DESKTOP, NEEDS_BROWSER, PHONE, browser
 from tests.cli.conftest import answer
 

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 import fes_mj
-from fes_mj.design import Design
 from fes_mj.explore.pose import as_json, ends, failing_angle
-from fes_mj.geometry import DYADS, clearances
-from fes_mj.kinematics import positions
-from fes_mj.variables import replaced
+from fes_mj.linkage.assembly import DYADS, clearances
+from fes_mj.linkage.design import Design
+from fes_mj.linkage.kinematics import positions
+from fes_mj.linkage.variables import replaced
 from fes_mj.viewing.bars import bars
 
 ANGLES = np.radians(np.arange(360.0))

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from fes_mj.errors import InputError
+from fes_mj.common.errors import InputError
 from fes_mj.explore.answers import Answers
 from fes_mj.explore.server import Server
 

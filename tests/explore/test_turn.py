@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 
 import fes_mj
-from fes_mj.design import Design
 from fes_mj.explore.answers import Answers
 from fes_mj.explore.dimensions import content_of
 from fes_mj.explore.server import as_json
 from fes_mj.explore.turn import DIGITS, POINTS, turn
-from fes_mj.fourier import fourier
-from fes_mj.statics import quasi_static
-from fes_mj.variables import replaced
+from fes_mj.linkage.design import Design
+from fes_mj.linkage.variables import replaced
+from fes_mj.moments.fourier import fourier
+from fes_mj.statics.turn import quasi_static
 
 ROUNDED = 0.5001 * 10.0**-DIGITS
 GROUPS = {name: fes_mj.load_moments(name) for name in ("p1p2", "p1p3")}

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 import fes_mj
-from fes_mj.cycles import cycles, uncertain_table
-from fes_mj.errors import InputError
+from fes_mj.common.errors import InputError
 from fes_mj.optimization.confidence import gain
 from fes_mj.optimization.optimize import optimize
 from fes_mj.optimization.problem import Problem
-from fes_mj.statics import difference_sd
+from fes_mj.statics.cycles import cycles, uncertain_table
+from fes_mj.statics.turn import difference_sd
 from tests.optimization.conftest import problem_of
 
 GROUPS = ("p1p2", "p1p3")

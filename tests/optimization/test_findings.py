@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 
 import fes_mj
+from fes_mj.common.provenance import digest
 from fes_mj.optimization.findings import Findings
 from fes_mj.optimization.optimize import optimize
 from fes_mj.optimization.search import Result
-from fes_mj.provenance import digest
 from tests.optimization.conftest import problem_of
 
 MARK = "FES_MJ_TEST_RUN"

@@ -9,7 +9,7 @@ import fes_mj
 from fes_mj.optimization.methods import STEP, random_pursuit
 from fes_mj.optimization.optimize import optimize
 from fes_mj.optimization.search import BudgetSpentError, Search
-from fes_mj.statics import quasi_static
+from fes_mj.statics.turn import quasi_static
 from tests.optimization.conftest import SIX_BARS, problem_of
 
 

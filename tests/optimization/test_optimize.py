@@ -23,7 +23,7 @@ def test_a_seed_gives_the_same_design_and_the_budget_holds(method: str) -> None:
 
 def test_processes_find_the_same_design() -> None:
     pytest.importorskip("joblib")
-    from fes_mj.parallel import Workers
+    from fes_mj.common.parallel import Workers
 
     problem = problem_of("d1")
     serial = optimize(problem, "differential-evolution", searches=2, budget=2000, seed=1)

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 import fes_mj
-from fes_mj.cycles import WorkTable, cycles
+from fes_mj.common.style import LINKS
 from fes_mj.optimization.outcome import Outcome
 from fes_mj.optimization.pareto import Front, fluctuation
 from fes_mj.optimization.winner import assess
-from fes_mj.statics import quasi_static
-from fes_mj.style import LINKS
+from fes_mj.statics.cycles import WorkTable, cycles
+from fes_mj.statics.turn import quasi_static
 from tests.browser import NEEDS_BROWSER, PHONE, browser, check_on_a_phone
 from tests.optimization.conftest import problem_of
 

@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 
 import fes_mj
-from fes_mj.fit import SEAT_LIMITS, best_seats, fit
+from fes_mj.fit.seat import SEAT_LIMITS, best_seats, fit
+from fes_mj.linkage.riders import populations
 from fes_mj.optimization.optimize import optimize
 from fes_mj.optimization.people import ONE_RIDER, STATISTICS, sampled
 from fes_mj.optimization.problem import LENGTH_COUNT, Problem
 from fes_mj.optimization.search import Search, feasible_start
-from fes_mj.riders import populations
-from fes_mj.statics import QuasiStatic
+from fes_mj.statics.turn import QuasiStatic
 from tests.optimization.conftest import SIX_BARS, TABLE, problem_of
 
 MOMENTS = fes_mj.load_moments("p1p2")

@@ -10,11 +10,11 @@ import pytest
 
 import fes_mj
 from fes_mj.cli.options import crank_speed
-from fes_mj.cycles import joint_speeds
-from fes_mj.design_file import design_toml
-from fes_mj.geometry import require_assembly
+from fes_mj.linkage.assembly import require_assembly
+from fes_mj.linkage.design_file import design_toml
 from fes_mj.optimization.optimize import optimize
 from fes_mj.optimization.problem import LENGTH_COUNT, Problem
+from fes_mj.statics.cycles import joint_speeds
 from tests.optimization.conftest import SIX_BARS, TABLE, problem_of
 
 

@@ -8,8 +8,8 @@ import pytest
 import fes_mj
 from fes_mj.optimization.optimize import optimize
 from fes_mj.optimization.ripple import RippleLimit
-from fes_mj.reduced import ride, steady_ripple
-from fes_mj.ride import Ride, balancing_slope
+from fes_mj.riding.reduced import ride, steady_ripple
+from fes_mj.riding.ride import Ride, balancing_slope
 from tests.optimization.conftest import SIX_BARS, problem_of
 
 MOMENTS = fes_mj.load_moments("p1p2")

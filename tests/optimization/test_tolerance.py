@@ -5,14 +5,14 @@ import pytest
 
 import fes_mj
 from fes_mj.optimization.tolerance import to_manufacturing, to_rider
-from fes_mj.statics import quasi_static
+from fes_mj.statics.turn import quasi_static
 from tests.optimization.conftest import TABLE
 
 
 def test_tolerance_against_one_design_at_a_time() -> None:
     """R2's links barely close: its share of turning samples, against the assembly condition itself."""
-    from fes_mj.geometry import require_assembly
-    from fes_mj.variables import lengths, with_lengths
+    from fes_mj.linkage.assembly import require_assembly
+    from fes_mj.linkage.variables import lengths, with_lengths
 
     design = fes_mj.load_design("r2")
     sampled = to_manufacturing(design, TABLE, np.random.default_rng(0))

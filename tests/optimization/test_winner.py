@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import fes_mj
-from fes_mj.kinematics import solve
+from fes_mj.linkage.kinematics import solve
 from fes_mj.optimization.ripple import RippleLimit
 from fes_mj.optimization.winner import Winner, assess
 

@@ -11,12 +11,12 @@ import fes_mj
 from fes_mj.budget.budget import Spread, together, unknowns
 from fes_mj.budget.power import UncertainPower
 from fes_mj.budget.unknowns import priors
-from fes_mj.design_file import DESIGNS
-from fes_mj.moments import GROUPS
+from fes_mj.linkage.design_file import DESIGNS
+from fes_mj.moments.joint_moments import GROUPS
+from fes_mj.moments.uncertainty import with_sd
 from fes_mj.paper.error_budget import CASES, DRAWS, FREE, FULL, GAINS, TIMES
 from fes_mj.paper.printed import SIX_BARS
-from fes_mj.statics import quasi_static
-from fes_mj.uncertainty import with_sd
+from fes_mj.statics.turn import quasi_static
 
 PAGE = json.loads((Path(__file__).parents[2] / "results" / "reproduction.json").read_text(encoding="utf-8"))[
     "error_budget"

@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fes_mj.errors import InputError
+from fes_mj.common.errors import InputError
+from fes_mj.common.reading import DATA
 from fes_mj.paper.evidence import functional, load_evidence
-from fes_mj.paper.printed import DATA
 from fes_mj.paper.reconstruction import reconstruct
 from tests.cli.test_fuzz import broken
 

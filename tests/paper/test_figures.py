@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 import fes_mj
-from fes_mj.inputs import read_toml
-from fes_mj.moments import GROUPS
-from fes_mj.paper.printed import DATA
+from fes_mj.common.reading import DATA, read_toml
+from fes_mj.moments.joint_moments import GROUPS
 from fes_mj.paper.reproduce import figures_page
 from fes_mj.paper.runs import Runs
 

@@ -5,7 +5,7 @@ import pytest
 import fes_mj
 from fes_mj.paper.gains import at_knee_speed
 from fes_mj.paper.runs import joint_speed
-from fes_mj.statics import quasi_static
+from fes_mj.statics.turn import quasi_static
 
 
 def test_equal_knee_speed_scales_power() -> None:

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 import fes_mj
-from fes_mj.fourier import fourier
-from fes_mj.moments import JointMoments
+from fes_mj.moments.fourier import fourier
+from fes_mj.moments.joint_moments import JointMoments
+from fes_mj.moments.torque_map import TorqueMap
 from fes_mj.paper.metrics import jump_weights, smoothing_weights
-from fes_mj.statics import quasi_static
-from fes_mj.torque_map import TorqueMap
+from fes_mj.statics.turn import quasi_static
 
 
 def test_smoothing_against_the_solver() -> None:

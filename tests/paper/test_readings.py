@@ -1,6 +1,6 @@
 """The identified dimensions beside the print."""
 
-from fes_mj.design_file import DESIGNS
+from fes_mj.linkage.design_file import DESIGNS
 from fes_mj.paper.printed import SIX_BARS
 from fes_mj.paper.readings import ranges_table
 

@@ -6,11 +6,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fes_mj.errors import InputError
-from fes_mj.moment_samples import sampled_coefficients
-from fes_mj.moments import GROUPS
+from fes_mj.common.errors import InputError
+from fes_mj.common.reading import DATA
+from fes_mj.moments.joint_moments import GROUPS
+from fes_mj.moments.samples import sampled_coefficients
 from fes_mj.paper.evidence import functional, load_evidence, of_group
-from fes_mj.paper.printed import DATA
 from fes_mj.paper.reconstruction import (
     Hyperparameters,
     Posterior,

@@ -2,7 +2,7 @@
 
 import pytest
 
-from fes_mj.moments import GROUPS
+from fes_mj.moments.joint_moments import GROUPS
 from fes_mj.paper.calibration import calibration_table, left_out_table, sensitivity_table
 from fes_mj.paper.evidence import load_evidence
 from fes_mj.paper.known import Known, known

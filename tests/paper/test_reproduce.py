@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 
 import fes_mj
-from fes_mj.design_file import DESIGNS
-from fes_mj.moments import GROUPS
+from fes_mj.linkage.design_file import DESIGNS
+from fes_mj.moments.joint_moments import GROUPS
 from fes_mj.paper.printed import table1
-from fes_mj.statics import quasi_static
+from fes_mj.statics.turn import quasi_static
 
 RESULTS = Path(__file__).parents[2] / "results"
 RECORD = json.loads((RESULTS / "reproduction.json").read_text(encoding="utf-8"))
@@ -29,8 +29,8 @@ def test_committed_powers_are_todays() -> None:
 
 
 def test_committed_inputs_are_todays() -> None:
+    from fes_mj.common.provenance import provenance
     from fes_mj.paper.reproduce import inputs
-    from fes_mj.provenance import provenance
 
     now = provenance(inputs())["inputs"]
     assert len(now) == len(inputs())

@@ -5,12 +5,13 @@ from pathlib import Path
 
 import pytest
 
-from fes_mj import load_design, load_moments, reduced
+from fes_mj import load_design, load_moments
+from fes_mj.common.units import KMH
+from fes_mj.moments.torque_velocity import load_torque_velocity
 from fes_mj.paper import riding
 from fes_mj.paper.printed import table1
-from fes_mj.ride import Ride, Road
-from fes_mj.torque_velocity import load_torque_velocity
-from fes_mj.units import KMH
+from fes_mj.riding import reduced
+from fes_mj.riding.ride import Ride, Road
 
 PAGE = json.loads((Path(__file__).parents[2] / "results" / "reproduction.json").read_text(encoding="utf-8"))["riding"]
 SPEEDS = {

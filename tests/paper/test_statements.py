@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 
 import fes_mj
-from fes_mj.errors import InputError
-from fes_mj.fourier import fourier
-from fes_mj.moment_samples import moments_of, sampled_coefficients
-from fes_mj.moments import GROUPS
+from fes_mj.common.errors import InputError
+from fes_mj.moments.fourier import fourier
+from fes_mj.moments.joint_moments import GROUPS
+from fes_mj.moments.samples import moments_of, sampled_coefficients
 from fes_mj.paper import statements
 from fes_mj.paper.evidence import load_evidence, of_group
 from fes_mj.paper.reconstruction import choose_hyperparameters, condition, draw
 from fes_mj.paper.statements import QUANTITIES, Statement, load_statements, told
-from fes_mj.statics import quasi_static
+from fes_mj.statics.turn import quasi_static
 
 TURN = np.radians(np.arange(0.0, 360.0, 2.0))
 

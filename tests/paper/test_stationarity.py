@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 import fes_mj
+from fes_mj.linkage.variables import LENGTHS, lengths, with_lengths
+from fes_mj.moments.uncertainty import standard_deviation, with_sd
 from fes_mj.paper.runs import joint_speed
 from fes_mj.paper.stationarity import MADE_FOR, STEP, slopes
-from fes_mj.statics import QuasiStatic, quasi_static
-from fes_mj.uncertainty import standard_deviation, with_sd
-from fes_mj.variables import LENGTHS, lengths, with_lengths
+from fes_mj.statics.turn import QuasiStatic, quasi_static
 
 PAGE = json.loads((Path(__file__).parents[2] / "results" / "reproduction.json").read_text(encoding="utf-8"))["gains"][
     "What the paper's search held"

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from fes_mj.moment_samples import sampled_coefficients
+from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
+from fes_mj.moments.samples import sampled_coefficients
 from fes_mj.paper.evidence import functional, load_evidence
 from fes_mj.paper.work_shares import shares, work
-from fes_mj.reference_tricycle import PAPER_TRICYCLE
 
 
 def test_a_constant_knee_moment_does_no_net_work() -> None:

@@ -28,9 +28,9 @@ def test_constraint_forces_are_the_reactions_of_the_massive_equilibrium(
 
     Without the steps at which a joint turns round: there the map jumps, and which side a step falls on is rounding.
     """
-    from fes_mj.kinematics import solve
-    from fes_mj.loads import body_loads
-    from fes_mj.statics import equilibrium
+    from fes_mj.linkage.kinematics import solve
+    from fes_mj.linkage.loads import body_loads
+    from fes_mj.statics.turn import equilibrium
 
     run = fes_mj.simulate(design, smooth_moments)
     motion = solve(design, run.crank_angle)

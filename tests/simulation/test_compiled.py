@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import fes_mj
-from fes_mj.errors import UnstableError
+from fes_mj.common.errors import UnstableError
 from fes_mj.simulation.bench import simulate
 from fes_mj.simulation.compiled import compiled_loop
 from fes_mj.simulation.stepping import feedback_loop

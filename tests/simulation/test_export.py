@@ -13,19 +13,19 @@ import pytest
 from numpy.typing import NDArray
 
 from fes_mj import load_design, load_moments
-from fes_mj.checks import definitions
-from fes_mj.design_file import DESIGNS
-from fes_mj.geometry import FROM_TOP
-from fes_mj.joints import JOINTS
+from fes_mj.common.checks import definitions
+from fes_mj.linkage.assembly import FROM_TOP
+from fes_mj.linkage.design_file import DESIGNS
+from fes_mj.linkage.joints import JOINTS
+from fes_mj.moments.torque_map import torque_map
 from fes_mj.simulation.bench import joint_drives, simulate
 from fes_mj.simulation.export import mjcf_text, scene_text, sidecar_text
 from fes_mj.simulation.mjcf import build_mjcf
 from fes_mj.simulation.sensors import Sensors
 from fes_mj.simulation.stepping import PRE_ROLL, drive_addresses
+from fes_mj.simulation.time_step import steps_per_turn
 from fes_mj.simulation.variants import variant_model, variant_options
-from fes_mj.statics import quasi_static
-from fes_mj.time_step import steps_per_turn
-from fes_mj.torque_map import torque_map
+from fes_mj.statics.turn import quasi_static
 
 COMBINATIONS = [
     combination

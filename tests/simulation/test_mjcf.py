@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 import fes_mj
-from fes_mj.kinematics import solve
-from fes_mj.segments import inertias
+from fes_mj.linkage.kinematics import solve
+from fes_mj.linkage.segments import inertias
 from fes_mj.simulation.mjcf import build_mjcf
 
 

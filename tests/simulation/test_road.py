@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 
 import fes_mj
-from fes_mj.reduced import leg_table
-from fes_mj.reduced_solver import INERTIA, RECOIL
-from fes_mj.ride import Ride, Road
+from fes_mj.moments.torque_velocity import load_torque_velocity
+from fes_mj.riding.reduced import leg_table
+from fes_mj.riding.ride import Ride, Road
+from fes_mj.riding.solver import INERTIA, RECOIL
 from fes_mj.simulation.road import ride_on_road
 from fes_mj.simulation.road_control import compiled_road_loop
 from fes_mj.simulation.road_mjcf import build_road_mjcf
-from fes_mj.torque_velocity import load_torque_velocity
 
 HILL = replace(fes_mj.load_moments("p1p2"), torque_velocity=load_torque_velocity("hill"))
 

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 import fes_mj
-from fes_mj.joints import JOINTS
+from fes_mj.linkage.joints import JOINTS
+from fes_mj.moments.torque_map import torque_map
 from fes_mj.simulation.mjcf import build_mjcf
 from fes_mj.simulation.sensors import Sensors
 from fes_mj.simulation.stepping import feedback_loop, run_loop
-from fes_mj.torque_map import torque_map
 
 
 def test_speed_is_the_slope_of_the_angle(smooth_moments: fes_mj.JointMoments) -> None:

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 import fes_mj
-from fes_mj.errors import UnstableError
+from fes_mj.common.errors import UnstableError
 
 
 def test_a_run_that_breaks_down_says_so(

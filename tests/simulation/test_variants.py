@@ -12,13 +12,13 @@ import pytest
 
 import fes_mj
 from fes_mj.cli.export import _Variant
-from fes_mj.design_file import DESIGNS
-from fes_mj.drive import POINTS, drive
-from fes_mj.errors import InputError
-from fes_mj.joints import JOINTS
+from fes_mj.common.errors import InputError
+from fes_mj.linkage.design_file import DESIGNS
+from fes_mj.linkage.joints import JOINTS
+from fes_mj.moments.drive import POINTS, drive
+from fes_mj.moments.torque_map import torque_map
 from fes_mj.simulation.variants import VARIANTS, variant_model, variant_options
-from fes_mj.statics import quasi_static
-from fes_mj.torque_map import torque_map
+from fes_mj.statics.turn import quasi_static
 from tools.measure_energy import ENERGY_LIMIT, GAP_LIMIT, LOOSE, lossless, move_freely
 
 DISCRETE, EULER, FAST, RK4 = (

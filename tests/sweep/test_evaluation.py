@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 import fes_mj
-from fes_mj.errors import InputError, UnstableError
-from fes_mj.statics import QuasiStatic
+from fes_mj.common.errors import InputError, UnstableError
+from fes_mj.common.units import RPM
+from fes_mj.linkage.variables import replaced
+from fes_mj.statics.turn import QuasiStatic
 from fes_mj.sweep.evaluation import column_types, evaluate
 from fes_mj.sweep.study import load_study
-from fes_mj.units import RPM
-from fes_mj.variables import replaced
 
 WIDE = """
 [grid]

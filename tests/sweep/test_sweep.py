@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import fes_mj
-from fes_mj.errors import InputError
+from fes_mj.common.errors import InputError
 from fes_mj.sweep.study import load_study
 from fes_mj.sweep.sweep import Sweep
 from tests.conftest import GRID, rows_of

@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from fes_mj import load_design
-from fes_mj.design_file import DESIGNS
+from fes_mj.linkage.design_file import DESIGNS
 from tools.conformance.asking import ROOT, interpreter, reference, rows
 from tools.conformance.judging import Row, judge
 from tools.conformance.motions import MOTIONS, jobs

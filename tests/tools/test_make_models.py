@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from fes_mj import load_design
-from fes_mj.design_file import DESIGNS
+from fes_mj.linkage.design_file import DESIGNS
 from tools.make_models import HEIGHT, SHIPPED, WIDTH, model_files
 
 ROOT = Path(__file__).parents[2]

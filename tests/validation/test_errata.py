@@ -15,14 +15,14 @@ import pytest
 from numpy.typing import NDArray
 
 import fes_mj
-from fes_mj import kinematics
-from fes_mj.geometry import grashof_margin, joint_ranges, require_assembly
-from fes_mj.inverse_dynamics import crank_moment
-from fes_mj.joints import PerJoint
+from fes_mj.linkage import kinematics
+from fes_mj.linkage.assembly import grashof_margin, joint_ranges, require_assembly
+from fes_mj.linkage.joints import PerJoint
+from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.paper.identification import identify
 from fes_mj.paper.printed import SIX_BARS, table1
-from fes_mj.reference_tricycle import PAPER_TRICYCLE
-from fes_mj.statics import equilibrium, virtual_work
+from fes_mj.statics.inverse_dynamics import crank_moment
+from fes_mj.statics.turn import equilibrium, virtual_work
 
 _TURN = np.radians(np.arange(3.0, 363.0, 5.0))
 _KNEE, _HIP = 9 + 11 * np.cos(_TURN - 1.2), 7 * np.sin(_TURN + 0.4)  # any moments will do
@@ -327,8 +327,8 @@ def test_e17_one_peak_and_no_inactive_zone_do_not_follow_from_table_1() -> None:
 
 def test_e18_the_rider_is_no_person() -> None:
     """R5 to the pedal axle's level is the median man's, the thigh nobody's; and whom the seats as drawn suit."""
-    from fes_mj.design_file import DESIGNS
-    from fes_mj.riders import populations
+    from fes_mj.linkage.design_file import DESIGNS
+    from fes_mj.linkage.riders import populations
 
     printed, man, woman = fes_mj.Rider(), *(populations()[who].rider(50) for who in ("man", "woman"))
     assert man.shank == pytest.approx(printed.shank, abs=0.005)  # it is printed to 1 cm

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from fes_mj import load_design, load_moments, quasi_static
-from fes_mj.geometry import grashof_margin, joint_ranges
-from fes_mj.moments import GROUPS
+from fes_mj.linkage.assembly import grashof_margin, joint_ranges
+from fes_mj.moments.joint_moments import GROUPS
+from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.paper.evidence import functional, load_evidence
 from fes_mj.paper.identification import identify
 from fes_mj.paper.printed import table1
 from fes_mj.paper.reconstruction import choose_hyperparameters, condition
-from fes_mj.reference_tricycle import PAPER_TRICYCLE
 
 SIX_BARS = ("r1", "r2", "d1", "d2")
 
@@ -53,7 +53,7 @@ def test_the_15_watts_of_section_3_are_predicted_without_being_used(group: str) 
 
 def test_knee_plateau_of_section_7() -> None:
     """Near 20 N m in extension at 73 deg, near -1 N m in flexion (P1P2)."""
-    from fes_mj.torque_map import TorqueMap
+    from fes_mj.moments.torque_map import TorqueMap
 
     torque_map = TorqueMap(load_moments("p1p2"))
     assert torque_map.moment("knee", math.radians(73), 1.0) == pytest.approx(20, abs=4)

@@ -9,10 +9,10 @@ from typing import Any
 import pytest
 
 from fes_mj import load_design, load_moments, quasi_static
-from fes_mj.checks import definitions
 from fes_mj.cli.app import run
-from fes_mj.time_step import steps_per_turn
-from fes_mj.units import RPM
+from fes_mj.common.checks import definitions
+from fes_mj.common.units import RPM
+from fes_mj.simulation.time_step import steps_per_turn
 from tools.verify_time_step import CADENCES
 
 RESULTS = Path(__file__).parents[2] / "results"

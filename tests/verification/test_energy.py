@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import fes_mj
-from fes_mj.crosscheck import Case
+from fes_mj.crosscheck.turn_case import Case
 from fes_mj.verification.energy import audit
 from fes_mj.verification.suite import servo_rounding
 from tests.verification.conftest import case_of

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import fes_mj
-from fes_mj import kinematics
-from fes_mj.kinematics import Rotation
+from fes_mj.linkage import kinematics
+from fes_mj.linkage.kinematics import Rotation
 from fes_mj.verification.geometry import closure_error, fourier_derivative, rate_errors
 
 

@@ -2,7 +2,7 @@
 
 from xml.etree import ElementTree
 
-from fes_mj.checks import check
+from fes_mj.common.checks import check
 
 
 def test_junit_reports_failures() -> None:

@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from fes_mj.checks import definitions
-from fes_mj.inputs import read_toml
+from fes_mj.common.checks import definitions
+from fes_mj.common.reading import read_toml
 from fes_mj.verification.mistakes import EDITS, STEPS, faults
 
 ROOT = Path(__file__).parents[2]

@@ -8,8 +8,8 @@ from xml.etree import ElementTree
 
 import pytest
 
-from fes_mj.checks import definitions
 from fes_mj.cli.app import run
+from fes_mj.common.checks import definitions
 from fes_mj.verification.mistakes import faults
 from tests.browser import NEEDS_BROWSER, browser, check_on_a_phone
 

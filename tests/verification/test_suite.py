@@ -1,6 +1,6 @@
 """The suite leaves out no check."""
 
-from fes_mj.checks import definitions
+from fes_mj.common.checks import definitions
 from fes_mj.verification.case import VerificationCase
 from fes_mj.verification.suite import FULL, benchmarks, verify
 

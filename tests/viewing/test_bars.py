@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import fes_mj
-from fes_mj.segments import foot_points
+from fes_mj.common.style import LINKS, hex_colour, rgb
+from fes_mj.linkage.segments import foot_points
 from fes_mj.simulation.appearance import PARTS
-from fes_mj.style import LINKS, hex_colour, rgb
 from fes_mj.viewing.bars import bars
 
 

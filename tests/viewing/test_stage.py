@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 import fes_mj
-from fes_mj import kinematics
-from fes_mj.design import LEGS
-from fes_mj.design_file import DESIGNS
+from fes_mj.common.style import hex_colour
+from fes_mj.linkage import kinematics
+from fes_mj.linkage.design_file import DESIGNS
+from fes_mj.linkage.legs import LEGS
 from fes_mj.simulation.mjcf import build_mjcf
-from fes_mj.style import hex_colour
 
 pytest.importorskip("PIL")
 pytest.importorskip("mediapy")

@@ -18,9 +18,9 @@ from pathlib import Path
 from rich.console import Console
 from rich.progress import Progress
 
-from fes_mj.design_file import DESIGNS, load_design
-from fes_mj.files import json_text, write_text
-from fes_mj.provenance import provenance
+from fes_mj.common.provenance import provenance
+from fes_mj.common.writing import json_text, write_text
+from fes_mj.linkage.design_file import DESIGNS, load_design
 from tools.conformance.asking import ROOT, build, interpreter, reference, rows
 from tools.conformance.judging import Row
 from tools.conformance.motions import jobs

@@ -10,7 +10,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from fes_mj.arrays import FloatArray
+from fes_mj.common.arrays import FloatArray
 from fes_mj.simulation.stepping import energy
 from tools.conformance.motions import MOTIONS, Job, Key
 from tools.conformance.readers import READERS, Answer, Reader

@@ -10,8 +10,8 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from fes_mj.design import Design
-from fes_mj.moments_file import load_moments
+from fes_mj.linkage.design import Design
+from fes_mj.moments.files import load_moments
 from fes_mj.simulation.export import mjcf_text
 from fes_mj.simulation.variants import variant_model, variant_options
 

@@ -1,0 +1,95 @@
+"""What people see on a terminal: aligned tables, and progress on standard error."""
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import TypeVar
+
+from rich.console import Console
+from rich.text import Text
+
+from fes_mj.common.text import printable
+
+Item = TypeVar("Item")
+GOOD, BAD = "bold green", "bold red"
+
+output = Console(markup=False, emoji=False, highlight=False)
+errors = Console(markup=False, emoji=False, highlight=False, stderr=True)
+
+
+def say(text: str, style: str | None = None) -> None:
+    """Print a line as it is, however long."""
+    output.print(printable(text), style=style, soft_wrap=True)
+
+
+def complain(text: str) -> None:
+    """Print a warning on standard error."""
+    errors.print(printable(f"warning: {text}"), style="yellow", soft_wrap=True)
+
+
+def conclude(ok: bool, result: str, more: str) -> None:
+    """Print what came out, in colour, and more about it."""
+    output.print(Text.assemble((result, GOOD if ok else BAD), printable(more)), soft_wrap=True)
+
+
+def print_table(title: str, columns: Sequence[str], rows: Iterable[Sequence[str | Text]]) -> None:
+    """Print a title and a table, first column left, the others right aligned."""
+    from rich.box import SIMPLE_HEAD
+    from rich.measure import measure_renderables
+    from rich.table import Table
+
+    say(title, "bold")
+    table = Table(box=SIMPLE_HEAD)
+    for number, column in enumerate(columns):
+        table.add_column(column, justify="right" if number else "left")
+    for row in rows:
+        table.add_row(*(printable(cell) if isinstance(cell, str) else cell for cell in row))
+    # a narrow screen may wrap lines, but no digit is left out
+    table.width = measure_renderables(output, output.options.update(max_width=1000), [table]).maximum
+    output.print(table, crop=False)
+
+
+@contextmanager
+def progress_bar(what: str, total: int, silent: bool = False, done: int = 0) -> Iterator[Callable[[int], None]]:
+    """A bar on standard error with rate and time left; call what it gives with the number of steps just made."""
+    from rich.progress import (
+        BarColumn,
+        MofNCompleteColumn,
+        Progress,
+        ProgressColumn,
+        Task,
+        TextColumn,
+        TimeRemainingColumn,
+    )
+
+    class Rate(ProgressColumn):
+        def render(self, task: Task) -> Text:
+            return Text(f"{task.speed:,.3g}/s" if task.speed else "")
+
+    columns = (
+        TextColumn("{task.description}", markup=False),
+        BarColumn(),
+        MofNCompleteColumn(),
+        Rate(),
+        TimeRemainingColumn(),
+    )
+    with Progress(*columns, console=errors, transient=True, disable=silent or not errors.is_terminal) as bars:
+        task = bars.add_task(printable(what), total=total, completed=done)
+        yield lambda steps: bars.update(task, advance=steps)
+
+
+def track(items: Sequence[Item], what: str, silent: bool = False) -> Iterator[Item]:
+    """The items one by one, with a progress bar that is gone when they are through."""
+    with progress_bar(what, len(items), silent) as advance:
+        for item in items:
+            yield item
+            advance(1)
+
+
+def number(value: float, unit: str = "") -> str:
+    """A value with two digits and its unit."""
+    return f"{value:.2g} {unit}".rstrip()
+
+
+def verdict(ok: bool) -> Text:
+    """Whether a check holds, in colour."""
+    return Text("ok", "green") if ok else Text("FAILED", BAD)

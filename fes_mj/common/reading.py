@@ -1,0 +1,214 @@
+"""All reading of files, with one wording for every refusal."""
+
+import csv
+import json
+import math
+import tomllib
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, NoReturn
+
+import numpy as np
+
+from fes_mj.common.arrays import FloatArray
+from fes_mj.common.errors import InputError
+
+DATA = Path(__file__).parents[1] / "data"  # what the package ships
+LARGEST_INPUT = 64 * 2**20  # bytes; a day of measured moments is smaller
+
+
+def read_text(path: Path, what: str) -> str:
+    """The text of a UTF-8 file, with or without a byte order mark. Raises InputError naming the file and the reason."""
+    try:
+        with path.open("rb") as file:
+            data = file.read(LARGEST_INPUT + 1)
+    except OSError as error:
+        raise InputError(f"{path}: cannot read the {what}: {error.strerror}") from None
+    except ValueError:  # a NUL in the name
+        raise InputError(f"{str(path)!r}: cannot read the {what}: no file can have this name") from None
+    if len(data) > LARGEST_INPUT:
+        raise InputError(f"{path}: cannot read the {what}: it is larger than {LARGEST_INPUT >> 20} MiB")
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        raise InputError(f"{path}: the {what} is not UTF-8 text") from None
+
+
+@dataclass(frozen=True)
+class Section:
+    """A table of a TOML file, read key by key; every refusal names file, key, value and what is allowed."""
+
+    path: Path
+    name: str  # "" for the file itself
+    content: dict[str, Any]
+
+    def label(self, key: str) -> str:
+        """The key as a user finds it in the file."""
+        return f"{self.name}.{key}" if self.name else key
+
+    def refuse(self, key: str, value: object, allowed: str) -> NoReturn:
+        """Raise InputError for a value that is not allowed."""
+        try:
+            shown = repr(value)
+        except ValueError:  # Python writes no integer of thousands of digits, as hexadecimals can be
+            shown = "a number of thousands of digits"
+        raise InputError(f"{self.path}: {self.label(key)} is {shown}; it must be {allowed}")
+
+    def only(self, allowed: Iterable[str]) -> None:
+        """Refuse keys that nobody reads."""
+        known = [*allowed]
+        for key in self.content:
+            if key not in known:
+                raise InputError(f"{self.path}: unknown key {self.label(key)}; allowed here: {', '.join(known)}")
+
+    def require(self, keys: Iterable[str], needs: str) -> None:
+        """Refuse a table in which a key is missing."""
+        for key in keys:
+            if key not in self.content:
+                raise InputError(f"{self.path}: {self.label(key)} is missing; {needs}")
+
+    def section(self, key: str) -> "Section":
+        """A table below this one, empty if it is not there."""
+        value = self.content.get(key, {})
+        if not isinstance(value, dict):
+            self.refuse(key, value, f"a table [{self.label(key)}]")
+        return Section(self.path, self.label(key), value)
+
+    def choice(self, key: str, options: Iterable[str], default: str | None = None) -> str:
+        """One of some words."""
+        value, known = self.content.get(key, default), [*options]
+        if not isinstance(value, str) or value not in known:
+            self.refuse(key, value, f"one of {', '.join(known)}")
+        return value
+
+    def switch(self, key: str) -> bool:
+        """True or false, false where it is not said."""
+        value = self.content.get(key, False)
+        if not isinstance(value, bool):
+            self.refuse(key, value, "true or false")
+        return value
+
+    def whole(self, key: str, default: int) -> int:
+        """A whole number from 1."""
+        value = self.content.get(key, default)
+        if isinstance(value, bool) or not isinstance(value, int) or value < 1:
+            self.refuse(key, value, "a whole number from 1")
+        return value
+
+    def number(self, key: str, low: float = -math.inf, high: float = math.inf, allowed: str = "a number") -> float:
+        """A finite number within bounds."""
+        value = self.content[key]
+        if not (is_number(value) and math.isfinite(value) and low <= value <= high):
+            self.refuse(key, value, allowed)
+        return float(value)
+
+    def ascending_pair(self, key: str, low: float = -math.inf, high: float = math.inf) -> tuple[float, float]:
+        """[lowest, highest], both finite and within bounds."""
+        value = self.content[key]
+        if not (isinstance(value, list) and len(value) == 2 and all(is_number(part) for part in value)):
+            self.refuse(key, value, "[lowest, highest]")
+        for part in value:
+            if not (math.isfinite(part) and low <= part <= high):
+                self.refuse(key, part, "a number" if low == -math.inf else f"from {low:g} to {high:g}")
+        if not value[0] < value[1]:
+            raise InputError(
+                f"{self.path}: {self.label(key)} is {value!r}; "
+                "the bounds contradict each other, the first must be the smaller"
+            )
+        return float(value[0]), float(value[1])
+
+
+def is_number(value: object) -> bool:
+    """Whether a TOML value is a number; true and false are none, nor is an integer that no float can hold."""
+    if isinstance(value, int) and not isinstance(value, bool):
+        return abs(value) < 10**300
+    return isinstance(value, float)
+
+
+def read_toml(path: Path, what: str) -> Section:
+    """A TOML file as the section of its top level. Raises InputError as read_text, and for what is not TOML."""
+    try:
+        return Section(path, "", tomllib.loads(read_text(path, what)))
+    except InputError:
+        raise
+    except (ValueError, RecursionError) as error:  # TOMLDecodeError, numbers of thousands of digits, deep nesting
+        raise InputError(f"{path}: not valid TOML: {error}") from None
+
+
+def read_json(path: Path, what: str) -> dict[str, Any]:
+    """A JSON file whose top level is an object. Raises InputError as read_text, and for what is no such file."""
+    try:
+        content = json.loads(read_text(path, what))
+    except InputError:
+        raise
+    except (ValueError, RecursionError) as error:
+        raise InputError(f"{path}: the {what} is not valid JSON: {error}") from None
+    if not isinstance(content, dict):
+        raise InputError(f"{path}: the {what} must be a JSON object")
+    return content
+
+
+@dataclass(frozen=True)
+class Table:
+    """A text table, whose cells are read column by column.
+
+    preamble: the text above the header, which is line `start`. lines: number of each row's line. rows: their cells.
+    """
+
+    path: Path
+    preamble: str
+    start: int
+    header: list[str]
+    lines: list[int]
+    rows: list[list[str]]
+
+    def column(self, name: str) -> FloatArray:
+        """The finite numbers of a column, shape (rows,). Raises InputError naming file, line, column and value."""
+        if name not in self.header:
+            known = ", ".join(self.header) or "nothing"
+            raise InputError(f"{self.path}: line {self.start}: there is no column {name!r}; the header names {known}")
+        if self.header.count(name) > 1:
+            raise InputError(f"{self.path}: line {self.start}: the header names the column {name!r} twice")
+        place = self.header.index(name)
+        cells = zip(self.lines, self.rows, strict=True)
+        return np.array([_cell(self.path, line, name, row[place]) for line, row in cells], float)
+
+
+def read_table(path: Path, what: str, *, after: str = "", commas: bool = True) -> Table:
+    """A table with a header line; blank lines are passed over.
+
+    after: the line above the header, if that is not the file's first. commas: between the columns, or blanks and tabs.
+    Raises InputError naming file and line.
+    """
+    text = read_text(path, what).splitlines()
+    start = next((number for number, line in enumerate(text, 1) if line.strip().lower() == after), 0) if after else 0
+    if after and not start:
+        raise InputError(f"{path}: the {what} has no line {after!r}, below which the columns begin")
+
+    def cells(line: str) -> list[str]:
+        row = next(csv.reader([line])) if commas else line.split()
+        return [cell.strip() for cell in row] if line.strip() else []
+
+    while start < len(text) and not text[start].strip():
+        start += 1
+    header = cells(text[start]) if start < len(text) else []
+    lines, rows = [], []
+    for number, line in enumerate(text[start + 1 :], start + 2):
+        row = cells(line)
+        if row and len(row) != len(header):
+            raise InputError(f"{path}: line {number} has {len(row)} values; the header names {len(header)} columns")
+        if row:
+            lines.append(number)
+            rows.append(row)
+    return Table(path, "\n".join(text[:start]), start + 1, header, lines, rows)
+
+
+def _cell(path: Path, line: int, column: str, cell: str) -> float:
+    try:
+        value = float(cell)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise InputError(f"{path}: line {line}: {column} is {cell.strip()!r}; it must be a finite number")
+    return value

@@ -1,0 +1,1 @@
+"""MuJoCo against the project's own mechanics: a turn at constant cadence, and a ride."""

@@ -1,0 +1,139 @@
+"""A ride by two solvers that share little, MuJoCo and the reduced equation of motion: what is compared, the verdict."""
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from importlib.metadata import version
+from typing import Any
+
+import numpy as np
+
+from fes_mj.common.arrays import FloatArray
+from fes_mj.common.checks import LEAST_POWER, Check, check
+from fes_mj.common.writing import csv_text
+from fes_mj.riding import reduced
+from fes_mj.riding.ride import Ride, Trace
+from fes_mj.simulation.road import RoadRun, ride_on_road
+from fes_mj.simulation.road_control import compiled_road_loop, road_loop
+from fes_mj.simulation.road_mjcf import TIMESTEP
+
+DISTANCES = 2000  # at which the two speeds are compared
+
+
+@dataclass(frozen=True, eq=False)
+class RideCase:
+    """A ride, computed when it is first asked for, by either solver.
+
+    timestep: of MuJoCo, s. compiled: both in machine code, which takes seconds to make; needs numba.
+    """
+
+    ride: Ride
+    timestep: float = TIMESTEP
+    compiled: bool = False
+
+    @cached_property
+    def simulation(self) -> RoadRun:
+        """By MuJoCo. Raises UnstableError if it breaks down."""
+        return ride_on_road(self.ride, self.timestep, compiled_road_loop if self.compiled else road_loop)
+
+    @cached_property
+    def reference(self) -> Trace:
+        """By the reduced equation of motion."""
+        return reduced.ride(self.ride, self.compiled)
+
+    def check(self, name: str, value: float) -> Check:
+        """A measured value of this ride beside its limit."""
+        return check(name, value, self.ride.name)
+
+    @cached_property
+    def checks(self) -> tuple[Check, ...]:
+        """The comparison."""
+        run, mine, other = self.simulation, self.simulation.trace, self.reference
+        least = LEAST_POWER * self.ride.duration
+        return (
+            self.check("ride_verdict", stops_apart(mine, other)),
+            self.check("ride_speed", speed_difference(mine, other)),
+            self.check("ride_settled", relative(mine.mean_speed, other.mean_speed)),
+            self.check("ride_power", self._power_difference()),
+            self.check("ride_energy", abs(run.lost) / max(float(np.ptp(mine.muscle_work)), least)),
+            self.check("loop_gap", run.loop_gap_max),
+        )
+
+    def _power_difference(self) -> float:
+        """Mean power of MuJoCo's muscles less what the reference's road takes and its motion gains, relative."""
+        delivered, taken, gained = self.simulation.trace.muscle_power, self.reference.road_power, None
+        if taken is not None:
+            gained = reduced.gained_power(self.reference)
+        if delivered is None or taken is None or gained is None:
+            return 0.0 if delivered is taken is None else math.inf
+        return abs(delivered - taken - gained) / max(abs(delivered), LEAST_POWER)
+
+    @property
+    def agrees(self) -> bool:
+        return all(each.ok for each in self.checks)
+
+    def summary(self) -> dict[str, Any]:
+        """The result as JSON names and units it."""
+        return self.simulation.trace.summary() | {
+            "agrees": self.agrees,
+            "checks": [each.as_json() for each in self.checks],
+            "reduced": {
+                key: value
+                for key, value in self.reference.summary().items()
+                if key in ("rides", "speed_kmh", "cadence_rpm", "speed_ripple", "distance_m", "stopped_at_s", "turns")
+            },
+            "energy_lost_J": self.simulation.lost,
+            "loop_gap_max_m": self.simulation.loop_gap_max,
+            "timestep_s": self.timestep,
+            "versions": {name: version(name) for name in ("fes-mj", "mujoco", "numpy")},
+        }
+
+    def trace_csv(self) -> str:
+        """MuJoCo's ride as CSV, a row a time step, with the reference's speed at the same time."""
+        mine, other = self.simulation.trace, self.reference
+        return csv_text(
+            {
+                "time_s": mine.time,
+                "crank_angle_deg": np.degrees(mine.crank_angle),
+                "crank_speed_rad_s": mine.crank_speed,
+                "distance_m": mine.distance,
+                "speed_m_s": mine.speed,
+                "reduced_speed_m_s": np.interp(mine.time, other.time, other.speed),
+                "freewheeling": mine.coasting.astype(int),
+                "muscle_work_J": mine.muscle_work,
+                "road_work_J": mine.road_work,
+            }
+        )
+
+
+def relative(one: float | None, other: float | None) -> float:
+    """Difference of two values per the second; 0 if there is neither, infinite if there is only one."""
+    if one is None or other is None:
+        return 0.0 if one is other else math.inf
+    return abs(one / other - 1)
+
+
+def stops_apart(one: Trace, other: Trace) -> float:
+    """Turns of the crank between the two stops; 0 if both ride, infinite if only one does."""
+    if one.rides != other.rides:
+        return math.inf
+    return 0.0 if one.rides else abs(one.turns - other.turns)
+
+
+def speed_difference(one: Trace, other: Trace) -> float:
+    """Root mean square difference of the tricycle's speed at equal distances, per its root mean square.
+
+    Distances are those that both reach; speeds at equal times would differ by what little one is ahead.
+    """
+    reach = min(float(each.distance.max()) for each in (one, other))
+    at = np.linspace(0, reach, DISTANCES)
+    mine, theirs = (_speed_at(each, at) for each in (one, other))
+    scale = math.sqrt(float(np.mean(theirs**2)))
+    return math.sqrt(float(np.mean((mine - theirs) ** 2))) / scale if scale else 0.0
+
+
+def _speed_at(trace: Trace, distance: FloatArray) -> FloatArray:
+    """Speed when the tricycle first comes to these distances, m/s."""
+    farthest = np.maximum.accumulate(trace.distance)
+    first = np.concatenate([[True], np.diff(farthest) > 0])
+    return np.asarray(np.interp(distance, farthest[first], trace.speed[first]))

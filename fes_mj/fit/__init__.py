@@ -1,0 +1,1 @@
+"""The seat for a rider, and who of a population can ride."""

@@ -1,0 +1,135 @@
+"""Who of a population can ride a design, with the seat as drawn and with the seat moved, and with what power."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from scipy.interpolate import RegularGridInterpolator
+
+from fes_mj.common.arrays import FloatArray
+from fes_mj.fit.seat import SEAT_LIMITS, SeatLimits, best_seats, score
+from fes_mj.linkage.design import Design
+from fes_mj.linkage.riders import SAMPLES, Legs, Population, populations
+from fes_mj.moments.joint_moments import JointMoments
+from fes_mj.statics.cycles import WorkTable
+
+SEATS = ("unmoved", "fitted")
+PEOPLE = {"men": "man", "women": "woman"}
+# Thighs and shanks for which the best seat is sought; in between its power is interpolated (see Study.map_error).
+_NODES = 9
+_PROBES = 5  # people of each sex whose seat is sought as well, for the error of the map
+_FINE = 61  # thighs and shanks of the map of the seat as drawn
+_MARGIN = 1e-6  # m, so that the extreme people are inside the map
+
+
+class PowerMap(NamedTuple):
+    """Power over thigh and shank (m), W, shape (thighs, shanks); NaN where nobody can ride."""
+
+    thigh: FloatArray
+    shank: FloatArray
+    power: FloatArray
+
+    def at(self, thigh: FloatArray, shank: FloatArray) -> FloatArray:
+        """Between the nodes, linear; NaN beside a node without power."""
+        points = np.column_stack([thigh, shank])
+        return np.asarray(RegularGridInterpolator((self.thigh, self.shank), self.power)(points))
+
+
+class Riders(NamedTuple):
+    """A sample of people, and their power with the seat as drawn and with the best seat, W, NaN for who cannot ride."""
+
+    people: Population
+    legs: Legs
+    unmoved: FloatArray
+    fitted: FloatArray
+
+
+@dataclass(frozen=True)
+class Study:
+    """A design and a sample of "men" and of "women".
+
+    drawn, map: with the seat as drawn and with the best one. map_error: largest difference of the interpolated power to
+    that of a seat sought for the very person, W.
+    """
+
+    design: Design
+    moments: JointMoments
+    drawn: PowerMap
+    map: PowerMap
+    riders: dict[str, Riders]
+    map_error: float
+
+    def summary(self) -> dict[str, Any]:
+        """The result as JSON names and units it."""
+        size = len(next(iter(self.riders.values())).unmoved)
+        content: dict[str, Any] = {"design": self.design.name, "group": self.moments.name, "samples": size}
+        for seat in SEATS:
+            powers = {who: getattr(each, seat) for who, each in self.riders.items()}
+            content[f"share_{seat}"] = {who: float(np.mean(np.isfinite(power))) for who, power in powers.items()}
+            content[f"power_mean_{seat}_W"] = {who: _of_riding(np.mean, power) for who, power in powers.items()}
+            content[f"power_p10_{seat}_W"] = {
+                who: _of_riding(lambda riding: np.percentile(riding, 10), power) for who, power in powers.items()
+            }
+        return content | {"map_error_W": self.map_error}
+
+
+def _of_riding(statistic: Callable[[FloatArray], Any], power: FloatArray) -> float | None:
+    riding = power[np.isfinite(power)]
+    return float(statistic(riding)) if riding.size else None
+
+
+def steps() -> int:
+    """How often study_population calls `done`."""
+    return _NODES + len(PEOPLE)
+
+
+def study_population(
+    design: Design,
+    moments: JointMoments,
+    *,
+    limits: SeatLimits = SEAT_LIMITS,
+    samples: int = SAMPLES,
+    seed: int = 0,
+    done: Callable[[], None] = lambda: None,
+) -> Study:
+    """Sample so many men and women; `done` is called steps() times.
+
+    Raises AssemblyError for a linkage that cannot turn whoever sits where.
+    """
+    table, random = WorkTable.of(moments), np.random.default_rng(seed)
+    legs = {who: populations()[key].sample(samples, random) for who, key in PEOPLE.items()}
+    thigh, shank = (
+        np.linspace(
+            min(each.min() for each in lengths) - _MARGIN, max(each.max() for each in lengths) + _MARGIN, _NODES
+        )
+        for lengths in ([each.thigh for each in legs.values()], [each.shank for each in legs.values()])
+    )
+    rows = []
+    for length in thigh:
+        rows.append(_fitted(design, np.full(_NODES, length), shank, table, limits))
+        done()
+    found, riders, errors = PowerMap(thigh, shank, np.array(rows)), {}, []
+    fine = [np.linspace(axis[0], axis[-1], _FINE) for axis in (thigh, shank)]
+    thighs, shanks = (each.ravel() for each in np.meshgrid(*fine, indexing="ij"))
+    drawn = PowerMap(fine[0], fine[1], _unmoved(design, thighs, shanks, table).reshape(_FINE, _FINE))
+    for who, each in legs.items():
+        fitted, unmoved = found.at(each.thigh, each.shank), _unmoved(design, each.thigh, each.shank, table)
+        riders[who] = Riders(populations()[PEOPLE[who]], each, unmoved, fitted)
+        probes = slice(0, _PROBES)
+        errors.append(fitted[probes] - _fitted(design, each.thigh[probes], each.shank[probes], table, limits))
+        done()
+    differences = np.abs(np.concatenate(errors))
+    return Study(design, moments, drawn, found, riders, float(np.nanmax(differences, initial=0.0)))
+
+
+def _unmoved(design: Design, thigh: FloatArray, shank: FloatArray, table: WorkTable) -> FloatArray:
+    """Power of riders with the seat as drawn, W, NaN for who cannot ride, shape (riders,)."""
+    scores = score(design.changed({}, {"thigh": thigh[:, None], "shank": shank[:, None]}), table)
+    return np.where(scores.fits, scores.power, np.nan)
+
+
+def _fitted(design: Design, thigh: FloatArray, shank: FloatArray, table: WorkTable, limits: SeatLimits) -> FloatArray:
+    """Power of riders with the best seat, W, NaN for whom none suits, shape (riders,)."""
+    _, scores = best_seats(design, thigh, shank, table, limits)
+    return np.where(scores.fits, scores.power, np.nan)

@@ -1,0 +1,220 @@
+"""A linkage before any force acts: does it turn, how far do its joints go, how well does it transmit?"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from fes_mj.common.arrays import BoolArray, ComplexArray, FloatArray
+from fes_mj.common.errors import AssemblyError
+from fes_mj.linkage.batch import batch_size, take
+from fes_mj.linkage.design import Design
+from fes_mj.linkage.kinematics import FULL_TURN, Motion, Points, joint_angles, positions, solve
+
+# Links of each dyad -> the points they span, and the joint between them.
+DYADS = {
+    ("rocker", "coupler"): ("rocker_pivot", "crank_pin", "rocker_joint"),
+    ("thigh", "shank"): ("hip", "pedal", "knee"),
+}
+# m: closer to a dead centre the motion is not determined. Lengths are not made more exactly, and nearer than this the
+# time step runs into rounding at high speed; results/time_step.md has what agrees from 0.15 mm on.
+LEAST_CLEARANCE = 1e-4
+# Angles between which the extremes of the leg's span are sought. A rocker LEAST_CLEARANCE from its dead centre passes
+# it within 2 deg, in which the pedal moves by a few millimetres: less than _NEAR, within which extremes are exact.
+SCAN = np.linspace(0.0, 2 * np.pi, 120, endpoint=False)
+_NEAR = 0.01  # m
+CRANK_ZERO = "the crank points backwards (+x)"  # where every crank angle that is printed begins
+FROM_TOP = "crank_angle_from_tdc_deg"  # the name of such angles in files
+LARGEST_SWING = np.pi  # rad, of the thigh: more than any hip can do
+_ITERATIONS = 20  # halving the steps of SCAN, where Newton does not help, leaves 5e-8 rad
+
+
+class Clearance(NamedTuple):
+    """How far a dyad stays from its dead centres, stretched and folded, over a turn; arrays of shape (designs,).
+
+    margin: m, negative if the links cannot close, NaN where the dyad before it does not. span: of the dyad's ends at
+    the least margin, m, at crank_angle, rad.
+    """
+
+    links: tuple[str, str]
+    margin: FloatArray
+    span: FloatArray
+    crank_angle: FloatArray
+
+
+def clearances(design: Design, points: Points | None = None) -> list[Clearance]:
+    """Clearance of every dyad, from the extremes of the distance it spans. points: `positions` at SCAN, if known.
+
+    A circle's extremes are known, those of the coupler curve (and the rocker's arc) are zeros of the radial velocity.
+    """
+    linkage = design.linkage
+    if "coupler" not in linkage.architecture.bodies:
+        return [_clearance(design, ("thigh", "shank"), *_of_circle(linkage.crank_centre, linkage.crank))]
+    pedal = np.atleast_2d((points or positions(design, SCAN))["pedal"])
+    return [_rocker_clearance(design), _clearance(design, ("thigh", "shank"), *_of_pedal(design, pedal))]
+
+
+def _rocker_clearance(design: Design) -> Clearance:
+    circle = _of_circle(design.linkage.pivot_to_crank, design.linkage.crank)
+    return _clearance(design, ("rocker", "coupler"), *circle)
+
+
+def _of_circle(centre: Any, radius: Any) -> tuple[FloatArray, FloatArray]:
+    """Smallest and largest distance of a circle from the origin, m, and where, rad; shape (2, designs)."""
+    distance, angle = np.ravel(np.abs(centre)), np.ravel(np.angle(centre))
+    radius = np.ravel(radius)
+    return np.stack([np.abs(distance - radius), distance + radius]), np.stack([angle + np.pi, angle])
+
+
+def _of_pedal(design: Design, pedal: ComplexArray) -> tuple[FloatArray, FloatArray]:
+    """The same for hip and pedal; pedal: at SCAN, shape (designs, angles)."""
+    distance = np.broadcast_to(np.abs(pedal), (batch_size(design), len(SCAN)))
+    ends = np.stack([distance.argmin(axis=1), distance.argmax(axis=1)])
+    spans, angles = np.take_along_axis(distance, ends.T, axis=1).T, SCAN[ends]
+    shortest, longest = span_limits(design, ("thigh", "shank"))
+    margins = np.stack([spans[0] - shortest, longest - spans[1]])
+    for end, sign in enumerate((-1, 1)):  # every local extreme that could be the one
+        height = sign * distance
+        peak = (height >= np.roll(height, 1, axis=1)) & (height > np.roll(height, -1, axis=1))
+        peak &= (margins[end][:, None] < _NEAR) & (height > sign * spans[end][:, None] - _NEAR)
+        rows, columns = np.nonzero(peak)
+        if rows.size:
+            exact_angle = _extreme(take(design, rows), SCAN[columns], sign)
+            exact = np.abs(positions(take(design, rows), exact_angle)["pedal"])[:, 0]
+            for row, value, angle in zip(rows, exact, exact_angle[:, 0], strict=True):
+                if not sign * value < sign * spans[end, row]:
+                    spans[end, row], angles[end, row] = value, angle
+    return spans, angles
+
+
+def _extreme(design: Design, angle: FloatArray, sign: int) -> FloatArray:
+    """Crank angles, shape (designs, 1), within a step of `angle` where the pedal's distance stops to grow (sign 1)."""
+    angle = angle[:, None]
+    low, high = angle - SCAN[1], angle + SCAN[1]
+    for _ in range(_ITERATIONS):  # Newton's, kept between the two angles by halves
+        value, first, second = solve(design, angle).points["pedal"]
+        slope = (np.conj(value) * first).real
+        growing = sign * slope > 0
+        low, high = np.where(growing, angle, low), np.where(growing, high, angle)
+        angle = angle - slope / (np.abs(first) ** 2 + (np.conj(value) * second).real)
+        angle = np.where((low < angle) & (angle < high), angle, (low + high) / 2)
+    return np.asarray(angle)
+
+
+def _clearance(design: Design, links: tuple[str, str], spans: FloatArray, angles: FloatArray) -> Clearance:
+    shortest, longest = span_limits(design, links)
+    margins = np.stack([spans[0] - shortest, longest - spans[1]])
+    worst = np.argmin(margins, axis=0)[None]
+    margin, span, angle = (
+        np.take_along_axis(each, worst, axis=0)[0] for each in np.broadcast_arrays(margins, spans, angles)
+    )
+    return Clearance(links, margin, span, angle % (2 * np.pi))
+
+
+def span_limits(design: Design, links: tuple[str, str]) -> tuple[FloatArray, FloatArray]:
+    """Shortest and longest distance that two links can span, m, shape (designs,)."""
+    first, second = (np.ravel(design.link_lengths[link]) for link in links)
+    return np.abs(first - second), first + second
+
+
+def obstacles(design: Design, reach: FloatArray, swing: FloatArray) -> dict[str, BoolArray]:
+    """Why designs of a batch do not turn right round, as require_assembly decides: reason -> which, shape (designs,).
+
+    The first reason that holds counts. reach: clearance of the leg at SCAN, m, made exact where it is small. swing: of
+    the thigh, rad.
+    """
+    found = {}
+    if "coupler" in design.linkage.architecture.bodies:
+        found = _shortfalls(("rocker", "coupler"), _rocker_clearance(design).margin)
+    turns = (reach > 0) & (swing < LARGEST_SWING)
+    for which in found.values():
+        turns = turns & ~which
+    doubtful = np.flatnonzero(turns & (reach < _NEAR))
+    if doubtful.size:
+        reach[doubtful] = clearances(take(design, doubtful))[-1].margin
+    found |= _shortfalls(("thigh", "shank"), reach)
+    found[f"the thigh swings through {np.degrees(LARGEST_SWING):.0f} deg or more"] = swing >= LARGEST_SWING
+    return {reason: np.broadcast_to(which, reach.shape) for reason, which in found.items()}
+
+
+def _shortfalls(links: tuple[str, str], margin: FloatArray) -> dict[str, BoolArray]:
+    """Why a dyad with such a clearance (m, shape (designs,)) cannot turn: reason -> which designs."""
+    pair = " and ".join(links)
+    return {
+        f"{pair} cannot close": ~(margin >= 0),
+        f"{pair} within {1e3 * LEAST_CLEARANCE:g} mm of a dead centre": (margin >= 0) & (margin < LEAST_CLEARANCE),
+    }
+
+
+def require_assembly(design: Design) -> None:
+    """Raise AssemblyError, naming links, crank angle and margin, unless the linkage turns right round."""
+    points = positions(design, SCAN)
+    for links, margin, span, angle in clearances(design, points):
+        for reason in (reason for reason, holds in _shortfalls(links, margin).items() if holds[0]):
+            start, end, _ = (name.replace("_", " ") for name in DYADS[links])
+            shortest, longest = (float(length[0]) for length in span_limits(design, links))
+            where = f"at crank angle {np.degrees(angle[0]):.1f} deg"
+            apart = (
+                f"{start} and {end} are {span[0]:.4f} m apart there, the two links reach from {shortest:.4f} to "
+                f"{longest:.4f} m"
+            )
+            if margin[0] < 0:
+                raise AssemblyError(f"{design.name}: {reason} {where}: {apart}; {-1e3 * margin[0]:.4g} mm lack")
+            state = "in line" if span[0] > (shortest + longest) / 2 else "folded flat"
+            raise AssemblyError(
+                f"{design.name}: {reason} {where}: {apart}; {1e3 * margin[0]:.2g} mm from being {state}, where the "
+                f"motion is not determined; {1e3 * LEAST_CLEARANCE:g} mm are needed"
+            )
+    swing = float(np.ptp(joint_angles(design, points).hip))
+    if swing >= LARGEST_SWING:
+        raise AssemblyError(
+            f"{design.name}: the thigh swings through {np.degrees(swing):.0f} deg; no hip moves by "
+            f"{np.degrees(LARGEST_SWING):.0f} deg or more"
+        )
+
+
+def top_dead_centre(design: Design) -> float:
+    """Crank angle at which the leg is bent most, the pedal nearest to the hip, rad within [0, 2 pi)."""
+    nearest = int(np.abs(positions(design, SCAN)["pedal"]).argmin())
+    return float(_extreme(design, SCAN[[nearest]], -1)[0, 0]) % (2 * np.pi)
+
+
+def degrees_from_top(design: Design, crank_angle: FloatArray) -> FloatArray:
+    """Crank angles (rad from the crank pointing backwards) from top dead centre, deg within [0, 360)."""
+    return np.asarray(np.degrees(crank_angle - top_dead_centre(design)) % 360)
+
+
+def joint_ranges(design: Design, crank_angle: FloatArray = FULL_TURN) -> FloatArray:
+    """Knee minimum and maximum, hip minimum and maximum, deg; NaN if it cannot close.
+
+    Shape (4,), or (designs, 4) for a batch.
+    """
+    angles = joint_angles(design, positions(design, crank_angle))
+    ends = [f(angle, axis=-1) for angle in angles for f in (np.min, np.max)]
+    return np.asarray(np.degrees(np.stack(ends, axis=-1)))
+
+
+def grashof_margin(design: Design) -> FloatArray:
+    """Grashof's inequality with the crank as shortest link: sum of the other two less crank and longest link, m.
+
+    The same as the rocker dyad's clearance. Shape (designs,), (1,) for a single design.
+    """
+    return _rocker_clearance(design).margin
+
+
+def transmission_angles(motion: Motion) -> dict[str, FloatArray]:
+    """Smallest transmission angle over the turn, deg, at the joint of each dyad: between its links, at most 90 deg.
+
+    Of a batch an array of shape (designs,).
+    """
+    angles = {}
+    for (one, other), (_, _, joint) in DYADS.items():
+        if joint in motion.points:
+            cosine = (motion.direction(one) * np.conj(motion.direction(other))).real
+            angles[joint] = np.degrees(np.acos(np.clip(np.abs(cosine), 0, 1)).min(axis=-1))
+    return angles
+
+
+def bounding_box(points: Points) -> tuple[complex, complex]:
+    """Lower left and upper right corner of the box around all the points, m."""
+    cloud = np.concatenate([np.ravel(value) for value in points.values()])
+    return complex(cloud.real.min(), cloud.imag.min()), complex(cloud.real.max(), cloud.imag.max())

@@ -1,0 +1,140 @@
+"""Design files: TOML in metres and degrees, read and written; the paper's designs are a folder of them."""
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from fes_mj.common.arrays import FloatArray
+from fes_mj.common.errors import InputError
+from fes_mj.common.reading import DATA, Section, is_number, read_toml
+from fes_mj.common.text import printable
+from fes_mj.linkage.design import ARCHITECTURES, BRANCHES, Design, Linkage, Rider
+from fes_mj.linkage.riders import PRESETS, preset
+from fes_mj.linkage.segments import DE_LEVA
+from fes_mj.linkage.variables import LONGEST, VARIABLES, Variable
+
+DESIGNS = ("trt", "r1", "r2", "d1", "d2")
+DIMENSIONS = ("identified", "printed")
+_FOLDER = DATA / "designs"
+
+
+def load_design(source: str | Path, dims: str = "identified") -> Design:
+    """A design of the paper ("trt", "r1", "r2", "d1", "d2"; dims "identified" or "printed") or a design file.
+
+    Raises InputError naming the file, the key, the value and what is allowed.
+    """
+    if dims not in DIMENSIONS:
+        raise InputError(f"dims is {dims!r}; it must be one of {', '.join(DIMENSIONS)}")
+    if source in DESIGNS:
+        return _read(_FOLDER / dims / f"{source}.toml")
+    path = Path(source)
+    if path.suffix != ".toml" and (len(str(source)) > 255 or "\0" in str(source) or not path.exists()):
+        raise InputError(f"{source}: no such design; it must be one of {', '.join(DESIGNS)} or a path to a .toml file")
+    return _read(path)
+
+
+def identified_draws(name: str) -> dict[str, FloatArray]:
+    """What identification leaves open of a six-bar of the paper: linkages by component (variables), in units of files.
+
+    Shape (linkages,) each, drawn evenly; empty for any other name. Written by tools/make_catalogue.py.
+    """
+    path = _FOLDER / "identified" / f"{name}-draws.npz"
+    if name not in DESIGNS or not path.exists():
+        return {}
+    with np.load(path) as stored:
+        return {component: np.asarray(stored[component]) for component in stored}
+
+
+def _read(path: Path) -> Design:
+    return read_design(read_toml(path, "design file"), printable(path.stem))
+
+
+def read_design(content: Section, name: str) -> Design:
+    """A design from the content of a design file. Raises InputError as load_design."""
+    content.only(("linkage", "rider"))
+    linkage = content.section("linkage")
+    if isinstance(linkage.content.get("rider"), str):
+        raise InputError(f"{content.path}: rider = ... stands in [linkage]; move it above the first table")
+    kind = linkage.choice("kind", ARCHITECTURES)
+    words = ("kind",) if kind == "trt" else ("kind", "branch")
+    numbers = read_values(linkage, kind, *words)
+    branch = linkage.choice("branch", BRANCHES, Linkage.branch)
+    return Design(name, Linkage(kind, **numbers, branch=branch), _rider(content, kind))
+
+
+def _rider(content: Section, kind: str) -> Rider:
+    """Of a table [rider] or, by `rider = "NAME"` above all tables, a preset."""
+    named = content.content.get("rider", {})
+    if isinstance(named, dict):
+        rider = content.section("rider")
+        sex = rider.choice("sex", DE_LEVA, Rider.sex)
+        return Rider(sex=sex, **read_values(rider, kind, "sex"))
+    found = preset(named)
+    if not found:
+        content.refuse("rider", named, f"a table [rider], or the name of a rider: {PRESETS}")
+    return found
+
+
+def read_values(section: Section, kind: str, *others: str, owner: str = "", partial: bool = False) -> dict[str, Any]:
+    """Attributes in SI and radians of a table, every key checked; `others` are its keys that somebody else reads.
+
+    owner: "linkage" or "rider", whose variables they are, if that is not the table's name. partial: nothing is needed.
+    """
+    known = _variables(owner or section.name, kind)
+    section.only((*known, *others))
+    for symbol, variable in known.items():
+        if variable.needed and not partial:
+            section.require([symbol], f"a {kind} needs {variable.allowed}")
+    return {v.attribute: _value(section, v) for symbol, v in known.items() if symbol in section.content}
+
+
+def _variables(owner: str, kind: str) -> dict[str, Variable]:
+    return {symbol: v for symbol, v in VARIABLES.items() if v.owner == owner and kind in v.kinds}
+
+
+def _value(section: Section, variable: Variable) -> float | complex:
+    value = section.content[variable.symbol]
+    parts = value if isinstance(value, list) else [value]
+    numbers = all(is_number(part) for part in parts)
+    shaped = isinstance(value, list) == variable.vector and len(parts) == (2 if variable.vector else 1)
+    if not (numbers and shaped and all(variable.accepts(part) for part in parts)):
+        metres = variable.unit == "m" and numbers and any(LONGEST < abs(part) < math.inf for part in parts)
+        hint = " (centimetres? lengths are in metres)" if metres else ""
+        section.refuse(variable.symbol, value, variable.allowed + hint)
+    if variable.vector:
+        return complex(*parts)
+    return math.radians(parts[0]) if variable.unit == "deg" else float(parts[0])
+
+
+def design_toml(design: Design, comment: str = "") -> str:
+    """The text of a design file that reads back as `design`; `comment` goes above it, a line each."""
+    kind = design.linkage.kind
+    lines = [f"# {line}".rstrip() for line in comment.splitlines()]
+    for table, owner, head in (
+        ("linkage", design.linkage, f'kind = "{kind}"'),
+        ("rider", design.rider, f'sex = "{design.rider.sex}"'),
+    ):
+        lines += [f"[{table}]", head]
+        if owner is design.linkage and design.linkage.branch != Linkage.branch:
+            lines.append(f'branch = "{design.linkage.branch}"')
+        for symbol, variable in _variables(table, kind).items():
+            value = getattr(owner, variable.attribute)
+            if not (variable.implied and value == getattr(type(owner), variable.attribute)):
+                lines.append(f"{symbol} = {_written(value, variable)}")
+    return "\n".join(lines) + "\n"
+
+
+def _written(value: Any, variable: Variable) -> str:
+    """Shortest decimal that reads back as the same number."""
+    if variable.vector:
+        return f"[{float(value.real)!r}, {float(value.imag)!r}]"
+    if variable.unit != "deg":
+        return repr(float(value))
+    degrees = math.degrees(value)
+    for digits in range(12, 18):  # radians and back: the nearest short decimal that is the same angle
+        text = np.format_float_positional(degrees, precision=digits, fractional=False, trim="0")
+        if math.radians(float(text)) == value:
+            return text
+    return repr(degrees)

@@ -1,0 +1,85 @@
+"""Joint moments of riders over the crank angle of the tricycle they were measured on."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from fes_mj.common.arrays import FloatArray
+from fes_mj.common.errors import InputError
+from fes_mj.linkage.joints import PerJoint
+from fes_mj.moments.fourier import fit, fourier
+from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE, ReferenceTricycle
+from fes_mj.moments.torque_velocity import TorqueVelocity
+
+GROUPS = ("p1p2", "p1p3")
+COLUMNS = ("crank_angle_deg", "knee_Nm", "hip_Nm")
+TURN_POINTS = 720  # of sums over the measured turn: exact for the products of harmonics that matter
+
+
+class Misreading(NamedTuple):
+    """A sign that a file means something else than it says: a word for it, and a sentence."""
+
+    name: str
+    text: str
+
+
+@dataclass(frozen=True, eq=False)
+class JointMoments:
+    """Net knee and hip moment of one leg over a tricycle's crank angle, periodic, extension positive.
+
+    crank_angle: shape (n,), rad from top dead centre, in any order and by any whole turns.
+    knee, hip: shape (n,), N m.
+    covariance: of the curves' Fourier coefficients, knee's then hip's (moments.fourier), (N m)^2, shape (98, 98);
+    None where their error is not known.
+    torque_velocity: how the moments change with joint speed; None is the paper's assumption, not at all.
+    measured_on: the tricycle, rider and cadence; cadence_known: whether the cadence is said anywhere.
+    left: the left leg's, where it has its own. misreadings: what looks wrong in the file they come from.
+    """
+
+    name: str
+    crank_angle: FloatArray
+    knee: FloatArray
+    hip: FloatArray
+    covariance: FloatArray | None = None
+    torque_velocity: TorqueVelocity | None = None
+    measured_on: ReferenceTricycle = PAPER_TRICYCLE
+    cadence_known: bool = True
+    left: "JointMoments | None" = None
+    misreadings: tuple[Misreading, ...] = ()
+
+    @cached_property
+    def coefficients(self) -> PerJoint[FloatArray]:
+        """Of the Fourier series of each moment's smooth curve through the samples (fourier.fit), N m, shape (49,)."""
+        found = fit(self.crank_angle, np.column_stack([self.knee, self.hip]))
+        return PerJoint(*found.T.copy())  # lie in memory as after a pickle: another process gets the same last bits
+
+    def at(self, crank_angle: Any) -> PerJoint[FloatArray]:
+        """Moments at crank angles from top dead centre, rad, any shape, N m."""
+        terms = fourier(crank_angle)
+        return self.coefficients.map(lambda each: np.asarray(np.einsum("...j,j->...", terms, each)))
+
+    def of_leg(self, name: str) -> "JointMoments":
+        """The moments of the leg that a name or its prefix (design.LEGS) belongs to."""
+        return self.left if self.left and name.startswith("left_") else self
+
+    def at_speed(self, relation: TorqueVelocity) -> "JointMoments":
+        """The same moments of both legs, with a torque-velocity relation. Raises InputError as require_cadence."""
+        self.require_cadence("with joint speed")
+        return replace(self, torque_velocity=relation, left=self.left and self.left.at_speed(relation))
+
+    def require_cadence(self, what: str) -> None:
+        """Raise InputError unless it is known at which cadence, hence at which joint speeds, they were measured."""
+        if not self.cadence_known:
+            raise InputError(
+                f"{self.name}: how these moments change {what} depends on the cadence they were measured at, which "
+                "is not said; name it in a measurement file (measured_on.cadence_rpm), or leave that change out"
+            )
+
+    @cached_property
+    def power_mean(self) -> PerJoint[float]:
+        """Mean power of each joint in the tricycle of the measurement, at its cadence, W."""
+        angle = np.linspace(0, 2 * np.pi, TURN_POINTS, endpoint=False)
+        moment, rate = self.at(angle), self.measured_on.joint_rates(angle)
+        return PerJoint.of(lambda joint: float(np.mean(moment[joint] * rate[joint])) * self.measured_on.cadence)

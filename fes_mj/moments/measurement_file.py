@@ -1,0 +1,246 @@
+"""Measurement files (TOML): what the columns of a file of joint moments mean, and on what they were measured."""
+
+import math
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+
+from fes_mj.common.arrays import FloatArray
+from fes_mj.common.errors import AssemblyError, InputError
+from fes_mj.common.reading import Section, Table, read_toml
+from fes_mj.common.units import RPM
+from fes_mj.linkage import kinematics
+from fes_mj.linkage.assembly import require_assembly
+from fes_mj.linkage.design_file import read_values
+from fes_mj.linkage.joints import JOINTS, PerJoint
+from fes_mj.linkage.loads import leg_moments
+from fes_mj.linkage.segments import DE_LEVA
+from fes_mj.linkage.variables import VARIABLES
+from fes_mj.moments.joint_moments import Misreading
+from fes_mj.moments.misreading import odd_angles
+from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE, ReferenceTricycle
+from fes_mj.moments.trial import WHAT, Turn, bounded, by_crank, by_knee, is_trial, load_table, says_radians, times
+
+_COLUMNS = {"crank": "crank_angle_deg", "knee": "knee_Nm", "hip": "hip_Nm"}
+_OTHERS = ("file", "kinematics", "knee_angle", "angle_unit", "zero", "turning", "unit", "extension", "pedal_force")
+_SIGNS = {"positive": 1.0, "negative": -1.0}
+_SENSES = {"forward": 1.0, "backward": -1.0}
+_OF_MOMENTS = ("knee", "hip", "unit", "extension")  # what a file of pedal forces does not have
+_OF_THE_CRANK = ("crank", "angle_unit", "zero", "turning")  # what a trial counted by the knee does not have
+
+
+@dataclass(frozen=True)
+class Description:
+    """A measurement file, every key checked.
+
+    files: those that it names, moments first. sign: of extension. sense: of the crank angle. zero: where that is, rad
+    after top dead centre. scale: N m per unit of the file. pedal_force: columns of its components, or none.
+    """
+
+    path: Path
+    section: Section
+    data: list[Path]
+    kinematics: list[Path]
+    columns: dict[str, str]
+    sign: PerJoint[float]
+    sense: float
+    zero: float
+    scale: float
+    pedal_force: list[str]
+    measured_on: ReferenceTricycle
+    cadence_known: bool
+
+    @property
+    def files(self) -> list[Path]:
+        """The files that it names."""
+        return [*self.data, *self.kinematics]
+
+    @classmethod
+    def read(cls, path: Path) -> "Description":
+        """Raises InputError naming file, key, value and what is allowed."""
+        content = read_toml(path, "measurement file")
+        content.only(("moments", "measured_on"))
+        section, measured_on = content.section("moments"), _measured_on(content.section("measured_on"))
+        section.only((*_COLUMNS, *_OTHERS))
+        section.require(["file"], "it names the file that holds the moments")
+        data, kinematics = _paths(section, "file"), _paths(section, "kinematics")
+        if kinematics:
+            _only_by_knee(section, data, kinematics)
+        pedal_force = _pedal_force(section)
+        extension = section.section("extension")
+        extension.only(JOINTS)
+        return cls(
+            path,
+            section,
+            data,
+            kinematics,
+            {key: _word(section, key, default) for key, default in _COLUMNS.items()},
+            PerJoint.of(lambda joint: _SIGNS[extension.choice(joint, _SIGNS, "positive")]),
+            _SENSES[section.choice("turning", _SENSES, "forward")],
+            _zero(section, measured_on),
+            _scale(section, content.section("measured_on").section("rider"), measured_on),
+            pedal_force,
+            measured_on,
+            bool({"cadence_rpm", "gear_ratio"} & content.section("measured_on").content.keys()),
+        )
+
+    def turns(self) -> tuple[list[Turn], list[Misreading]]:
+        """Every turn that the files hold, and what looks wrong in their crank angles."""
+        turns: list[Turn] = []
+        odd: dict[str, Misreading] = {}
+        for number, path in enumerate(self.data):
+            if self.kinematics:
+                turns += self._by_knee(path, self.kinematics[number])
+            else:
+                found, wrong = self._by_crank(path)
+                turns += found
+                odd |= {each.name: each for each in wrong}
+        return turns, [*odd.values()]
+
+    def _by_crank(self, path: Path) -> tuple[list[Turn], list[Misreading]]:
+        """Turns of a file with a crank angle: of a trial over time each, of other rows one."""
+        table, crank = load_table(path, WHAT), self.columns["crank"]
+        trial = is_trial(table)
+        given, unit = bounded(table, crank, angle=True), self._angle_unit(table)
+        angle = self.sense * (np.radians(given) if unit == "deg" else given)
+        if trial:
+            times(table)
+        values = self._values(table)
+        rows = by_crank(path, crank, angle) if trial else [np.arange(len(angle))]
+        return [self._turn(angle[row] + self.zero, values[:, row]) for row in rows], odd_angles(given, unit)
+
+    def _by_knee(self, path: Path, kinematics: Path) -> list[Turn]:
+        """Turns of a trial, from one dead centre of the knee to the next, between which the crank turns evenly."""
+        column = _word(self.section, "knee_angle", "knee_angle_r")
+        motion, table = load_table(kinematics, "kinematics"), load_table(path, WHAT)
+        tops = by_knee(kinematics, column, times(motion), self.sign.knee * motion.column(column))
+        time, values = times(table), self._values(table)
+        if time[0] > tops[-1] or time[-1] < tops[0]:
+            raise InputError(
+                f"{path}: column time goes from {time[0]:g} to {time[-1]:g} s, whole turns of {kinematics} from "
+                f"{tops[0]:.4g} to {tops[-1]:.4g} s; moments.file and moments.kinematics must be of one trial"
+            )
+        turns = []
+        for start, end in pairwise(tops):
+            row = (start <= time) & (time < end)
+            if time[0] <= start and end <= time[-1]:
+                turns.append(self._turn(2 * np.pi * (time[row] - start) / (end - start), values[:, row]))
+        if not turns:
+            raise InputError(f"{path}: no whole turn of {kinematics} lies within {time[0]:g} to {time[-1]:g} s")
+        return turns
+
+    @property
+    def _measured(self) -> list[str]:
+        """The two columns that were measured."""
+        return self.pedal_force or [self.columns[joint] for joint in JOINTS]
+
+    def _values(self, table: Table) -> FloatArray:
+        """Knee and hip moment, N m, extension positive, or the two components of the pedal force, N; shape (2, n)."""
+        values = np.stack([bounded(table, column) for column in self._measured])
+        return values if self.pedal_force else self.scale * np.array([*self.sign])[:, None] * values
+
+    def _turn(self, angle: FloatArray, values: FloatArray) -> Turn:
+        """A turn at crank angles from top dead centre, rad; of pedal forces by inverse dynamics."""
+        if not self.pedal_force:
+            return Turn(angle, *values)
+        motion = kinematics.solve(self.measured_on.design, angle + self.measured_on.top_dead_centre)
+        return Turn(angle, *leg_moments(motion, self.measured_on.cadence, values[0] + 1j * values[1]))
+
+    def _angle_unit(self, table: Table) -> str:
+        """Unit of the crank angle: as declared, otherwise as the header of an OpenSim file says, otherwise deg."""
+        header = says_radians(table)
+        said = {None: "deg", True: "rad", False: "deg"}[header]
+        unit = self.section.choice("angle_unit", ("deg", "rad"), said)
+        if header is not None and unit != said:
+            raise InputError(
+                f"{table.path}: the header says that angles are in {said}, moments.angle_unit of {self.path} says "
+                f"{unit}; correct one of them"
+            )
+        return unit
+
+
+def _paths(section: Section, key: str) -> list[Path]:
+    """One file name or a list of them, looked for beside the measurement file."""
+    value = section.content.get(key, [])
+    names = value if isinstance(value, list) else [value]
+    if not all(isinstance(name, str) and name and "\0" not in name for name in names) or (
+        value == [] and key == "file"
+    ):
+        section.refuse(key, value, "the name of a file, or a list of such names")
+    return [section.path.parent / name for name in names]
+
+
+def _word(section: Section, key: str, default: str) -> str:
+    value = section.content.get(key, default)
+    if not isinstance(value, str):
+        section.refuse(key, value, "the name of a column")
+    return value
+
+
+def _pedal_force(section: Section) -> list[str]:
+    """The columns of pedal_force; empty where the file holds moments."""
+    value = section.content.get("pedal_force", [])
+    if value == []:
+        return []
+    if not (isinstance(value, list) and len(value) == 2 and all(isinstance(name, str) for name in value)):
+        section.refuse("pedal_force", value, "the names of two columns: force on the pedal along x and y, N")
+    for key in _OF_MOMENTS:
+        if key in section.content:
+            raise InputError(
+                f"{section.path}: {section.label(key)} and {section.label('pedal_force')} exclude each other: "
+                "the file holds moments or pedal forces"
+            )
+    return [*value]
+
+
+def _only_by_knee(section: Section, data: list[Path], kinematics: list[Path]) -> None:
+    """Refuse a trial whose crank angle is told twice, or whose files do not pair."""
+    for key in _OF_THE_CRANK:
+        if key in section.content:
+            raise InputError(
+                f"{section.path}: {section.label(key)} and {section.label('kinematics')} tell the crank angle in two "
+                "ways; with kinematics the knee tells it: leave out one of them"
+            )
+    if len(data) != len(kinematics):
+        raise InputError(
+            f"{section.path}: {section.label('file')} names {len(data)} and {section.label('kinematics')} "
+            f"{len(kinematics)} files; each trial needs one of both"
+        )
+
+
+def _zero(section: Section, measured_on: ReferenceTricycle) -> float:
+    """Where the crank angle is zero, rad after top dead centre."""
+    value = section.content.get("zero", "tdc")
+    if isinstance(value, str):
+        return {"tdc": 0.0, "horizontal": -measured_on.top_dead_centre}[
+            section.choice("zero", ("tdc", "horizontal"), "tdc")
+        ]
+    return math.radians(section.number("zero", -360, 360, '"tdc", "horizontal" or degrees after tdc from -360 to 360'))
+
+
+def _scale(section: Section, rider: Section, measured_on: ReferenceTricycle) -> float:
+    """N m per unit of the file."""
+    if section.choice("unit", ("N m", "N m/kg"), "N m") == "N m":
+        return 1.0
+    rider.require(["mass"], f"{section.label('unit')} is N m/kg: the moments are per kg of the rider's body mass")
+    return float(measured_on.design.rider.mass)
+
+
+def _measured_on(section: Section) -> ReferenceTricycle:
+    """The tricycle, rider and cadence: the paper's, with what the file says of its own."""
+    section.choice("kind", ("trt",), "trt")
+    rider, paper = section.section("rider"), PAPER_TRICYCLE.design
+    sex = rider.choice("sex", DE_LEVA, paper.rider.sex)
+    linkage = read_values(section, "trt", "kind", "cadence_rpm", "rider", owner="linkage", partial=True)
+    own = paper.changed(linkage, read_values(rider, "trt", "sex", owner="rider") | {"sex": sex})
+    allowed = VARIABLES["cadence_rpm"]
+    cadence = own.linkage.cadence
+    if "cadence_rpm" in section.content:
+        cadence = section.number("cadence_rpm", allowed.low, allowed.high, allowed.allowed) * RPM
+    try:
+        require_assembly(replace(own, name=f"{section.path}: measured_on"))
+    except AssemblyError as error:
+        raise InputError(f"{error}; moments cannot have been measured on it") from None
+    return ReferenceTricycle(own, cadence)

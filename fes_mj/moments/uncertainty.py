@@ -1,0 +1,82 @@
+"""Standard deviations of powers that depend on recovered joint moments.
+
+Mean power is linear in the two moment curves, hence in their Fourier coefficients: its variance is a quadratic form
+in their covariance. Two designs under the same curves have correlated powers; their ratio is surer than either.
+"""
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from fes_mj.common.arrays import FloatArray
+from fes_mj.linkage.joints import JOINTS
+from fes_mj.linkage.kinematics import Motion
+from fes_mj.moments.fourier import fourier
+from fes_mj.moments.reference_tricycle import ReferenceTricycle
+from fes_mj.moments.torque_map import TorqueMap
+
+_NEGLIGIBLE = 1e-9  # part of the largest variance of moments; directions below it are rounding
+
+
+def power_weights(motion: Motion, cadence: Any, torque: TorqueMap | ReferenceTricycle) -> FloatArray:
+    """Mean crank power of one leg per Fourier coefficient of knee, then hip moment, W/(N m), shape (98,).
+
+    motion: over uniform crank angles; of a batch of designs the shape is (designs, 98). cadence: rad/s, a batch's of
+    shape (designs, 1). torque: with a torque-velocity relation the sign of its moments, by which the relation tells
+    shortening from lengthening, is kept; without one the tricycle of the measurement is enough.
+    """
+    parts = [
+        (gain[..., None, :] @ features)[..., 0, :] / gain.shape[-1]
+        for gain, features in _gains(motion, cadence, torque)
+    ]
+    return np.asarray(cadence * np.concatenate(parts, axis=-1))
+
+
+def instant_power_weights(motion: Motion, cadence: float, torque: TorqueMap) -> FloatArray:
+    """The same of the power at every crank angle of one design, shape (angles, 98): their mean is power_weights."""
+    parts = [gain[:, None] * features for gain, features in _gains(motion, cadence, torque)]
+    return np.asarray(cadence * np.concatenate(parts, axis=-1))
+
+
+def _gains(
+    motion: Motion, cadence: Any, torque: TorqueMap | ReferenceTricycle
+) -> Iterator[tuple[FloatArray, FloatArray]]:
+    """Of knee, then hip: power per moment and crank speed, and the terms of the series where its moment is read."""
+    angle, rate = motion.joint_angle, motion.joint_rate
+    for joint in JOINTS:
+        gain, source = rate[joint], torque.source_angle(joint, angle[joint], rate[joint])
+        if isinstance(torque, TorqueMap) and torque.moments.torque_velocity:
+            gain = gain * torque.speed_factor(joint, source, cadence * gain)
+        yield gain, fourier(source)
+
+
+def power_rows(motion: Motion, cadence: float, reference: ReferenceTricycle) -> FloatArray:
+    """Crank power of one leg at each crank angle of a motion per Fourier coefficient, W/(N m), shape (angles, 98).
+
+    Their mean over uniform crank angles is what power_weights gives without a torque-velocity relation.
+    """
+    angle, rate = motion.joint_angle, motion.joint_rate
+    rows = [rate[j][:, None] * fourier(reference.source_angle(j, angle[j], rate[j])) for j in JOINTS]
+    return np.asarray(cadence * np.concatenate(rows, axis=1))
+
+
+def with_sd(value: float, deviation: float | None, digits: int = 2) -> str:
+    """A value with its standard deviation, where that is known."""
+    return f"{value:.{digits}f}" + ("" if deviation is None else f" +- {deviation:.{digits}f}")
+
+
+def standard_deviation(weights: FloatArray, covariance: FloatArray) -> float:
+    """Of the linear functional with these weights, shape (98,), of coefficients with this covariance."""
+    return float(np.sqrt(weights @ covariance @ weights))
+
+
+def independent_deviations(covariance: FloatArray) -> FloatArray:
+    """One standard deviation of coefficients along each of the directions that vary, shape (98, directions).
+
+    Coefficients are their mean and these, each times a standard normal number of its own.
+    """
+    variance, directions = np.linalg.eigh(covariance)
+    large = variance > _NEGLIGIBLE * variance[-1]
+    # rounded: the last bits depend on the threads that the library uses, and results must not
+    return np.asarray(np.round(directions[:, large] * np.sqrt(variance[large]), 10))

@@ -1,0 +1,1 @@
+"""Free riding on a road without MuJoCo: the reduced equation of motion, starts, and when to stimulate."""

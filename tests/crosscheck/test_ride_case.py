@@ -1,0 +1,74 @@
+"""Two solvers on one ride: they agree, and a mistake in one of them is seen."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import fes_mj
+from fes_mj.crosscheck.ride_case import RideCase
+from fes_mj.moments.torque_velocity import load_torque_velocity
+from fes_mj.riding import reduced
+from fes_mj.riding.ride import Ride, Road, balancing_slope
+
+P1P2 = fes_mj.load_moments("p1p2")
+HILL = replace(P1P2, torque_velocity=load_torque_velocity("hill"))
+
+
+@pytest.mark.parametrize(
+    "ride",
+    [
+        Ride(fes_mj.load_design("d1"), HILL, duration=4.0),
+        Ride(fes_mj.load_design("r2"), P1P2, Road(slope=0.02), "fixed", duration=4.0),
+        Ride(fes_mj.load_design("trt"), HILL, Road(slope=-0.01), launch=0.0, start=1.0, duration=6.0),
+        Ride(fes_mj.load_design("d2"), HILL, lag=0.1, transmission="fixed", duration=4.0),
+    ],
+    ids=lambda ride: ride.name,
+)
+def test_both_solvers_ride_the_same_way(ride: Ride) -> None:
+    case = RideCase(ride)
+    assert case.agrees, [check for check in case.checks if not check.ok]
+
+
+def test_d1_stops_on_the_slope_that_its_mean_power_climbs() -> None:
+    """With a freewheel; both say so, and in which turn."""
+    ride = Ride(fes_mj.load_design("d1"), P1P2, duration=12.0)
+    case = RideCase(replace(ride, road=Road(slope=balancing_slope(ride))))
+    assert not case.simulation.trace.rides
+    assert case.agrees
+    assert case.summary()["stopped_at_s"] == pytest.approx(case.reference.stopped_at, abs=0.05)
+    fixed = replace(case.ride, transmission="fixed", duration=12.0)
+    assert reduced.ride(fixed).rides
+
+
+@pytest.mark.parametrize(
+    ("column", "value"), [(reduced.RECOIL, 0.0), (reduced.INERTIA, 0.5), (reduced.COMMANDS + 1, 0.0)]
+)
+def test_a_wrong_reference_is_seen(column: int, value: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    right = reduced.leg_table
+
+    def wrong(*arguments: object) -> object:
+        table = right(*arguments).copy()  # type: ignore[arg-type]
+        table[:, column] *= value
+        return table
+
+    monkeypatch.setattr(reduced, "leg_table", wrong)
+    case = RideCase(Ride(fes_mj.load_design("d1"), HILL, transmission="fixed", duration=2.0))
+    assert not case.agrees
+
+
+def test_the_balancing_slope_balances(design: fes_mj.Design) -> None:
+    ride = Ride(design, P1P2)
+    slope = balancing_slope(ride)
+    load, speed = replace(ride, road=Road(slope=slope)).load, 5.71 / 3.6
+    power = 2 * fes_mj.quasi_static(design, P1P2).power_mean
+    assert speed * (load.rolling + load.climb + load.drag * speed**2) == pytest.approx(power, rel=1e-9)
+
+
+def test_the_ride_as_a_table() -> None:
+    case = RideCase(Ride(fes_mj.load_design("trt"), HILL, duration=1.0))
+    header, *rows = case.trace_csv().splitlines()
+    assert header.startswith("time_s,crank_angle_deg,")
+    assert len(rows) == len(case.simulation.trace.time) == 5001
+    table = np.array([row.split(",") for row in rows], float)
+    assert np.abs(table[:, 4] - table[:, 5]).max() < 1e-3

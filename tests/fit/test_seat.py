@@ -1,0 +1,110 @@
+"""The seat that is found against another search, and against what a moved seat must do."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.optimize import differential_evolution
+
+import fes_mj
+from fes_mj.common.errors import AssemblyError
+from fes_mj.fit.seat import SEAT_LIMITS, WAY_COST, SeatLimits, Seats, best_seats, fit, score, seat_text
+from fes_mj.linkage.design import Rider
+from fes_mj.linkage.kinematics import solve
+from fes_mj.linkage.riders import populations
+from fes_mj.statics.cycles import WorkTable
+from fes_mj.statics.turn import QuasiStatic
+
+# W: a fifth of the smallest standard deviation of a power with a moved seat, 0.25 W
+SEARCH_ERROR = 0.05
+
+
+def test_a_moved_seat_moves_the_hip_and_nothing_else(design: fes_mj.Design) -> None:
+    """Against the crank centre all of the linkage keeps its place; the hip goes forwards (-x) and up (y)."""
+    moved = Seats(0.02, 0.01, 0.1).moved(design)
+    before, after = (solve(each).points for each in (design, moved))
+    for point in before.keys() - {"hip", "knee"}:
+        relative = [each[point].value - each["crank_centre"].value for each in (before, after)]
+        assert relative[0] == pytest.approx(relative[1])
+    hips = [complex(each["hip"].value - each["crank_centre"].value) for each in (before, after)]
+    assert hips[1] - hips[0] == pytest.approx(-0.02 + 0.01j)
+    assert moved.linkage.seat_angle - design.linkage.seat_angle == pytest.approx(0.1)
+
+
+@pytest.mark.parametrize("name", ["r1", "r2", "d1", "d2"])
+@pytest.mark.parametrize(("who", "percentile"), [("man", 50), ("woman", 5), ("man", 95)])
+def test_another_search_finds_no_better_seat(name: str, who: str, percentile: float) -> None:
+    design, table = fes_mj.load_design(name), WorkTable.of(fes_mj.load_moments("p1p2"))
+    rider = populations()[who].rider(percentile)
+    seats, scores = best_seats(design, [rider.thigh], [rider.shank], table)
+
+    def loss(x: np.ndarray) -> np.ndarray:
+        tried = Seats(*x[..., None])
+        legs = {"thigh": np.full((x.shape[1], 1), rider.thigh), "shank": np.full((x.shape[1], 1), rider.shank)}
+        merit = score(tried.moved(design.changed({}, legs)), table).merit
+        return np.asarray(WAY_COST * np.ravel(tried.way) - merit)
+
+    other = differential_evolution(
+        loss, SEAT_LIMITS, vectorized=True, updating="deferred", rng=1, popsize=20, maxiter=120, tol=1e-8, polish=False
+    )
+    assert scores.merit[0] - WAY_COST * seats.way[0] > -other.fun - SEARCH_ERROR
+
+
+def test_several_riders_are_fitted_as_each_alone() -> None:
+    design, table = fes_mj.load_design("d1"), WorkTable.of(fes_mj.load_moments("p1p2"))
+    thigh, shank = [0.38, 0.44], [0.50, 0.55]
+    together = best_seats(design, thigh, shank, table)[1].power
+    alone = [best_seats(design, thigh[i : i + 1], shank[i : i + 1], table)[1].power[0] for i in (0, 1)]
+    assert together == pytest.approx(alone, rel=1e-12)
+
+
+def test_a_fit_stays_within_limits_and_range_and_never_loses_power() -> None:
+    moments, limits = fes_mj.load_moments("p1p2"), SeatLimits((0.0, 0.1), (-0.02, 0.02), (0.0, 0.0))
+    for name in ("r1", "d2"):
+        design = fes_mj.load_design(name)
+        found = fit(design, Rider(), moments, limits)
+        assert isinstance(found.static, QuasiStatic)
+        assert all(low <= value <= high for value, (low, high) in zip(found.seat, limits, strict=True))
+        free = fit(design, Rider(), moments)
+        assert isinstance(free.static, QuasiStatic)
+        assert free.static.extrapolation.share == 0
+        drawn = fes_mj.quasi_static(design, moments)
+        assert free.static.power_mean > drawn.power_mean
+
+
+def test_a_seat_that_need_not_move_stays() -> None:
+    """The TRT delivers its own moments wherever they are in range: nothing is gained by moving."""
+    found = fit(fes_mj.load_design("trt"), Rider(), fes_mj.load_moments("p1p2"))
+    assert found.seat == pytest.approx((0, 0, 0), abs=2e-3)
+    assert seat_text(Seats(0.0, 0.0, 0.0)) == "stays where it is"
+    assert (
+        seat_text(Seats(-0.05, 0.1, math.radians(3))) == "5.0 cm away from the crank, 10.0 cm up, seat angle +3.0 deg"
+    )
+
+
+def test_who_does_not_fit_is_told_by_how_much_where_and_what_helps() -> None:
+    child, moments = populations()["woman"].of_stature(1.25), fes_mj.load_moments("p1p2")
+    found = fit(fes_mj.load_design("d1"), child, moments, SeatLimits((0.0, 0.1), (0.0, 0.0), (0.0, 0.0)))
+    content = found.summary()
+    assert not content["fits"]
+    assert content["power_mean_W"] is None
+    for words in ("thigh and shank cannot close at crank angle", "mm lack"):
+        assert words in content["why"]
+    assert content["helps"][0].startswith("a seat that moves farther: ")
+    # the least lack within the limits is where the seat is nearest
+    assert content["seat_shift_m"] == pytest.approx([0.1, 0.0], abs=1e-3)
+
+
+def test_a_shorter_crank_helps_where_it_does() -> None:
+    """The seat is fixed, and the leg longer than hip to crank centre by less than the crank."""
+    design = fes_mj.load_design("trt")
+    far = abs(design.linkage.crank_centre)
+    rider = Rider(thigh=0.4, shank=math.sqrt((far + 0.8 * design.linkage.crank - 0.4) ** 2 - 0.069**2))
+    found = fit(design, rider, fes_mj.load_moments("p1p2"), SeatLimits((0.0, 0.0), (0.0, 0.0), (0.0, 0.0)))
+    assert not found.fits
+    assert any("a crank (R2) of 10.5 instead of 15.0 cm" in text for text in found.helps)
+
+
+def test_no_seat_repairs_a_linkage_that_cannot_turn() -> None:
+    with pytest.raises(AssemblyError, match="rocker and coupler cannot close"):
+        fit(fes_mj.load_design("r2", "printed"), Rider(), fes_mj.load_moments("p1p2"))

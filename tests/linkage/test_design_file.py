@@ -1,0 +1,91 @@
+"""Design files: what reads back, and what is refused with which words."""
+
+import math
+from pathlib import Path
+
+import pytest
+
+from fes_mj.common.errors import InputError
+from fes_mj.linkage.design import Design
+from fes_mj.linkage.design_file import DESIGNS, design_toml, load_design
+
+TRT = {"kind": '"trt"', "R1": "[-0.736, -0.304]", "R2": "0.15", "R6": "0.069", "gear_ratio": "1.31", "seat_angle": "60"}
+
+
+def written(folder: Path, rider: str = "", **changes: str | None) -> Path:
+    """A TRT's design file with some keys changed, or removed (None)."""
+    keys = {key: value for key, value in (TRT | changes).items() if value is not None}
+    path = folder / "mine.toml"
+    path.write_text("[linkage]\n" + "".join(f"{key} = {value}\n" for key, value in keys.items()) + rider)
+    return path
+
+
+def test_a_design_reads_back_as_it_was_written(design: Design, tmp_path: Path) -> None:
+    path = tmp_path / f"{design.name}.toml"
+    path.write_text(design_toml(design, "A comment\nof two lines"))
+    assert load_design(path) == design
+
+
+def test_the_readme_example_of_the_format_is_accepted(tmp_path: Path) -> None:
+    path = tmp_path / "own.toml"
+    path.write_text(
+        '[linkage]\nkind = "cdt"\nR1 = [-0.62, 0.25]\nR2 = 0.16\nR6 = 0.10\nR7 = [-0.38, 0.09]\nR8 = 0.14\n'
+        "R9 = 0.34\nR10 = 0.22\ngear_ratio = 2.10\nseat_angle = 30.0\n[rider]\nthigh = 0.5\n"
+    )
+    design = load_design(path)
+    assert design.linkage.coupler_angle == math.pi / 2
+    assert (design.rider.thigh, design.rider.shank, design.rider.mass) == (0.5, 0.52, 75.0)
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"R2": "15.0"}, r"linkage.R2 is 15.0; .*metres from 0.001 to 2 \(centimetres\? lengths are in metres\)"),
+        ({"R1": "[-73.6, -30.4]"}, r"linkage.R1 is \[-73.6, -30.4\].*centimetres"),
+        ({"R2": "-0.15"}, "linkage.R2 is -0.15; it must be a length in metres from 0.001"),
+        ({"R2": "0.0"}, "linkage.R2 is 0.0"),
+        ({"R2": "nan"}, "linkage.R2 is nan"),
+        ({"R6": "inf"}, "linkage.R6 is inf"),
+        ({"R2": '"long"'}, "linkage.R2 is 'long'"),
+        ({"R2": "true"}, "linkage.R2 is True"),
+        ({"R2": "[0.1, 0.1]"}, r"linkage.R2 is \[0.1, 0.1\]"),
+        ({"R1": "-0.7"}, r"linkage.R1 is -0.7; it must be \[x, y\] in metres"),
+        ({"R1": "[-0.7]"}, r"linkage.R1 is \[-0.7\]"),
+        ({"R2": None}, "linkage.R2 is missing; a trt needs a length"),
+        ({"R7": "[0.1, 0.1]"}, "unknown key linkage.R7; allowed here: R1, R2, R6, gear_ratio, seat_angle"),
+        ({"R_2": "0.1"}, "unknown key linkage.R_2"),
+        ({"kind": '"bike"'}, "linkage.kind is 'bike'; it must be one of trt, crt, cdt"),
+        ({"kind": None}, "linkage.kind is None"),
+        ({"kind": "[1]"}, r"linkage.kind is \[1\]"),
+        ({"gear_ratio": "0"}, "linkage.gear_ratio is 0; it must be a ratio from 0.01 to 20"),
+        ({"seat_angle": "1000"}, "linkage.seat_angle is 1000; it must be an angle in degrees"),
+        ({"rider": "[rider]\nmass = -3\n"}, "rider.mass is -3; it must be a mass in kg"),
+        ({"rider": "[rider]\nweight = 75\n"}, "unknown key rider.weight"),
+        ({"rider": '[rider]\nsex = "x"\n'}, "rider.sex is 'x'; it must be one of male, female"),
+        ({"rider": "[extra]\n"}, "unknown key extra; allowed here: linkage, rider"),
+        ({"rider": "[linkage]\n"}, "not valid TOML"),
+    ],
+)
+def test_what_cannot_be_used_is_named(changes: dict[str, str], words: str, tmp_path: Path) -> None:
+    path = written(tmp_path, **changes)
+    with pytest.raises(InputError, match=words) as caught:
+        load_design(path)
+    assert str(path) in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_unknown_designs_and_unreadable_files(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=f"x9: no such design; it must be one of {', '.join(DESIGNS)} or a path"):
+        load_design("x9")
+    with pytest.raises(InputError, match=r"nothing.toml: cannot read the design file: No such file"):
+        load_design(tmp_path / "nothing.toml")
+    with pytest.raises(InputError, match="cannot read the design file: Is a directory"):
+        load_design(tmp_path)
+    (tmp_path / "latin.toml").write_bytes(b"# \xe9\n")
+    with pytest.raises(InputError, match="not UTF-8"):
+        load_design(tmp_path / "latin.toml")
+    (tmp_path / "flat.toml").write_text("linkage = 3\n")
+    with pytest.raises(InputError, match="linkage is 3; it must be a table"):
+        load_design(tmp_path / "flat.toml")
+    with pytest.raises(InputError, match="dims is 'guessed'; it must be one of identified, printed"):
+        load_design("d1", "guessed")

@@ -1,0 +1,289 @@
+"""Measurement files: the same moments told in many ways, on many tricycles, and what is refused with which words."""
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from fes_mj.common.errors import InputError
+from fes_mj.common.units import RPM
+from fes_mj.common.writing import csv_text
+from fes_mj.linkage import kinematics
+from fes_mj.linkage.design_file import load_design
+from fes_mj.linkage.joints import JOINTS
+from fes_mj.moments.files import Measurement, load_measurement, load_moments, measured_files, moments_csv
+from fes_mj.moments.measurement_file import Description
+from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE, ReferenceTricycle
+from fes_mj.simulation.bench import simulate
+from fes_mj.simulation.stepping import FORCE_EVERY
+from fes_mj.statics.turn import quasi_static
+from tools.make_trial import FOLDER, invented, trial
+
+TURN = np.radians(np.arange(360.0))
+HEADS = ("crank_angle_deg", "knee_Nm", "hip_Nm")
+SLOW = ReferenceTricycle(PAPER_TRICYCLE.design, 47 * RPM)
+TRIAL = """[moments]
+file = "id.sto"
+kinematics = "ik.mot"
+knee = "knee_angle_r_moment"
+hip = "hip_flexion_r_moment"
+extension = { hip = "negative" }
+[measured_on]
+cadence_rpm = 47
+"""
+
+
+def plain(folder: Path, step: float = 10.0) -> Path:
+    """The invented moments as a plain CSV."""
+    degrees = np.arange(0, 360, step)
+    path = folder / "plain.csv"
+    path.write_text(csv_text(dict(zip(HEADS, (degrees, *invented(np.radians(degrees))), strict=True))))
+    return path
+
+
+def described(folder: Path, text: str) -> Path:
+    path = folder / "described.toml"
+    path.write_text(text)
+    return path
+
+
+def write_trial(folder: Path, measured_on: ReferenceTricycle, turns: float, noise: float, seed: int = 1) -> None:
+    for name, text in zip(("ik.mot", "id.sto"), trial(measured_on, turns, noise, seed), strict=True):
+        (folder / name).write_text(text)
+
+
+def power(path: Path) -> float:
+    return quasi_static(load_design("d1"), load_moments(path)).power_mean
+
+
+def test_radians_from_the_horizontal_with_flipped_signs_per_kg(tmp_path: Path) -> None:
+    after = np.radians(np.arange(0, 360, 5.0))
+    moment = invented(after)
+    angle = -(after + PAPER_TRICYCLE.top_dead_centre)  # counted backwards, from the crank pointing backwards
+    columns = {"theta": angle, "Mk": -moment.knee / 68.5, "Mh": -moment.hip / 68.5, "comment": 0 * angle}
+    (tmp_path / "odd.csv").write_text(csv_text(columns))
+    path = described(
+        tmp_path,
+        '[moments]\nfile = "odd.csv"\ncrank = "theta"\nknee = "Mk"\nhip = "Mh"\nangle_unit = "rad"\n'
+        'zero = "horizontal"\nturning = "backward"\nunit = "N m/kg"\n'
+        'extension = { knee = "negative", hip = "negative" }\n[measured_on.rider]\nmass = 68.5\n',
+    )
+    assert power(path) == pytest.approx(power(plain(tmp_path)), rel=1e-3)
+    assert load_moments(path).misreadings == ()
+
+
+@pytest.mark.parametrize("zero", [-90.0, 37.0])
+def test_any_zero(zero: float, tmp_path: Path) -> None:
+    after = np.arange(0, 360, 5.0)
+    (tmp_path / "a.csv").write_text(
+        csv_text(dict(zip(HEADS, (after - zero, *invented(np.radians(after))), strict=True)))
+    )
+    path = described(tmp_path, f'[moments]\nfile = "a.csv"\nzero = {zero}\n')
+    assert power(path) == pytest.approx(power(plain(tmp_path)), rel=1e-6)
+
+
+def test_a_trial_without_noise(tmp_path: Path) -> None:
+    """What the knee's dead centre and the sampling cost: less than a thousandth of the power."""
+    write_trial(tmp_path, SLOW, 4.4, 0.0)
+    assert power(described(tmp_path, TRIAL)) == pytest.approx(power(plain(tmp_path)), rel=1e-3)
+
+
+def test_three_noisy_turns_are_within_their_own_error_bar(tmp_path: Path) -> None:
+    """Of fifty such trials about 68 % are within one standard deviation, and all within half a percent."""
+    exact, within = power(plain(tmp_path)), 0
+    for seed in range(50):
+        write_trial(tmp_path, SLOW, 3.4, 0.03, seed)
+        measurement = load_measurement(described(tmp_path, TRIAL))
+        assert len(measurement.turns) == 3
+        result = quasi_static(load_design("d1"), measurement.moments, points=720)
+        assert result.power_sd is not None
+        assert result.power_mean == pytest.approx(exact, rel=5e-3)
+        within += abs(result.power_mean - exact) < math.hypot(result.power_sd, 5e-4 * exact)  # beside dead centres
+    assert 0.5 < within / 50 < 0.86  # 0.68 +- 2.7 binomial standard deviations
+
+
+def test_the_error_bar_is_the_scatter_of_the_turns(tmp_path: Path) -> None:
+    """Mean power is linear in the moments: its error is that of the mean of the turns' own powers."""
+    write_trial(tmp_path, SLOW, 5.4, 0.8)
+    found = load_measurement(described(tmp_path, TRIAL))
+    powers = [
+        sum(
+            Measurement.of(replace(found.moments, crank_angle=t.crank_angle, knee=t.knee, hip=t.hip)).moments.power_mean
+        )
+        for t in found.turns
+    ]
+    assert sum(found.moments.power_mean) == pytest.approx(np.mean(powers), rel=1e-6)
+    student = stats.t.ppf(stats.norm.cdf(1), len(powers) - 1)  # few turns know their own scatter badly
+    assert found.power_sd == pytest.approx(student * stats.sem(powers), rel=1e-4)
+
+
+@pytest.mark.parametrize("turning", ["forward", "backward"])
+def test_a_trial_with_a_crank_angle_is_cut_into_turns(turning: str, tmp_path: Path) -> None:
+    after = np.radians(np.arange(100.0, 100 + 3 * 360, 4.0))
+    angle = np.degrees(after) * (1 if turning == "forward" else -1) % 360
+    columns = {"time": after / SLOW.cadence, **dict(zip(HEADS, (angle, *invented(after)), strict=True))}
+    (tmp_path / "a.csv").write_text(csv_text(columns))
+    path = described(tmp_path, f'[moments]\nfile = ["a.csv", "a.csv"]\nturning = "{turning}"\n')
+    assert len(load_measurement(path).turns) == 6
+    assert power(path) == pytest.approx(power(plain(tmp_path)), rel=1e-6)
+    other = {"forward": "backward", "backward": "forward"}[turning]
+    with pytest.raises(InputError, match=r"counts against the sense of pedalling while time grows; moments\.turning"):
+        load_moments(described(tmp_path, f'[moments]\nfile = "a.csv"\nturning = "{other}"\n'))
+
+
+def test_moments_have_in_their_own_tricycle_the_power_they_had_there() -> None:
+    measurement = load_measurement(FOLDER / "trial.toml")
+    reference = measurement.moments.measured_on
+    design = replace(reference.design, name="own")
+    result = quasi_static(design, measurement.moments, reference.cadence)
+    assert reference.design.linkage.crank == 0.13
+    assert result.power_mean == pytest.approx(sum(measurement.moments.power_mean), rel=1e-6)
+    assert result.power_sd == pytest.approx(measurement.power_sd, rel=1e-6)
+    elsewhere = quasi_static(load_design("trt"), measurement.moments, reference.cadence)
+    assert abs(elsewhere.power_mean / result.power_mean - 1) > 0.05
+
+
+def test_defaults_are_the_papers() -> None:
+    assert load_moments().measured_on is PAPER_TRICYCLE
+
+
+def test_the_shipped_trial_is_what_the_tool_makes() -> None:
+    written = trial(Description.read(FOLDER / "trial.toml").measured_on, 4.4, 0.8)
+    assert written == tuple((FOLDER / name).read_text() for name in ("ik.mot", "id.sto"))
+    assert [path.name for path in measured_files(FOLDER / "trial.toml")] == ["trial.toml", "id.sto", "ik.mot"]
+
+
+def test_the_plain_csv_reads_back(tmp_path: Path) -> None:
+    moments = load_moments(plain(tmp_path))
+    (tmp_path / "again.csv").write_text(moments_csv(moments))
+    angle = np.linspace(0, 2 * np.pi, 1000)
+    again = load_moments(tmp_path / "again.csv").at(angle)
+    assert np.abs(again.knee - moments.at(angle).knee).max() < 1e-5
+    assert np.abs(again.hip - moments.at(angle).hip).max() < 1e-5
+
+
+def misreadings(folder: Path, change: str) -> set[str]:
+    """Names of the warnings for a changed plain file."""
+    degrees = np.arange(0, 360, 10.0)
+    angle, (knee, hip) = degrees, invented(np.radians(degrees))
+    if change == "radians":
+        angle = np.radians(degrees)
+    elif change == "per kg":
+        knee, hip = knee / 75, hip / 75
+    elif change == "signs":
+        knee, hip = -knee, -hip
+    elif change == "knee's sign":
+        knee = -knee
+    elif change == "half a turn":
+        angle, knee, hip = angle[:18], knee[:18], hip[:18]
+    path = folder / "a.csv"
+    path.write_text(csv_text(dict(zip(HEADS, (angle, knee, hip), strict=True))))
+    return {each.name for each in load_moments(path).misreadings}
+
+
+@pytest.mark.parametrize(
+    ("change", "names"),
+    [
+        ("nothing", set()),
+        ("radians", {"radians", "gap"}),
+        ("per kg", {"per_kg"}),
+        ("signs", {"negative_power", "exchanged"}),
+        ("knee's sign", {"negative_power", "exchanged"}),
+        ("half a turn", {"gap"}),
+    ],
+)
+def test_what_looks_misread(change: str, names: set[str], tmp_path: Path) -> None:
+    assert misreadings(tmp_path, change) >= names
+    if not names:
+        assert misreadings(tmp_path, change) == names
+
+
+def test_degrees_declared_as_radians(tmp_path: Path) -> None:
+    plain(tmp_path)
+    path = described(tmp_path, '[moments]\nfile = "plain.csv"\nangle_unit = "rad"\n')
+    assert "degrees" in {each.name for each in load_moments(path).misreadings}
+
+
+REFUSED = [
+    ('file = "plain.csv"\nknee = "M"', r"plain\.csv: line 1: there is no column 'M'; the header"),
+    ('file = "none.csv"', r"none\.csv: cannot read the joint moments: No such file"),
+    ('knee = "M"', r"moments\.file is missing"),
+    ("file = 3", r"moments\.file is 3; it must be the name of a file, or a list of such names"),
+    ("file = []", r"moments\.file is \[\]"),
+    ('file = "plain.csv"\nangle_unit = "grad"', r"moments\.angle_unit is 'grad'; it must be one of deg, rad"),
+    ('file = "plain.csv"\nzero = "bdc"', r"moments\.zero is 'bdc'; it must be one of tdc, horizontal"),
+    ('file = "plain.csv"\nzero = 1000', r"moments\.zero is 1000; it must be"),
+    ('file = "plain.csv"\nturning = "left"', r"moments\.turning is 'left'"),
+    ('file = "plain.csv"\nextension = { ankle = "positive" }', r"unknown key moments\.extension\.ankle"),
+    ('file = "plain.csv"\nunit = "N m/kg"', r"measured_on\.rider\.mass is missing; moments\.unit is N m/kg"),
+    ('file = "plain.csv"\nunits = "N m"', r"unknown key moments\.units"),
+    ('file = "stuck.csv"', r"stuck\.csv: line 4: time is 1 after 1 s; it must grow"),
+    ('file = "short.csv"', r"short\.csv: crank_angle_deg goes through 200 deg; a whole turn is needed"),
+    ('file = "plain.csv"\nkinematics = "ik.mot"\ncrank = "crank_angle_deg"', r"tell the crank angle in two ways"),
+    ('file = ["id.sto", "id.sto"]\nkinematics = "ik.mot"', r"names 2 and moments\.kinematics 1 files"),
+    ('file = "id.sto"\nkinematics = "none.mot"', r"none\.mot: cannot read the kinematics"),
+    ('file = "id.sto"\nkinematics = "ik.mot"', r"id\.sto: line 7: there is no column 'knee_Nm'"),
+    ('file = "id.sto"\nkinematics = "ik.mot"\nknee_angle = "hip_l"', r"ik\.mot: line 7: there is no column 'hip_l'"),
+    ('file = "late.sto"\nkinematics = "ik.mot"\nknee = "knee_angle_r_moment"\nhip = "hip_flexion_r_moment"',
+     r"late\.sto: column time goes from 100 to .* must be of one trial"),
+    ('file = "id.sto"\nkinematics = "brief.mot"\nknee = "knee_angle_r_moment"\nhip = "hip_flexion_r_moment"',
+     r"brief\.mot: knee_angle_r is smallest . times; a whole turn lies between two"),
+    ('file = "headless.sto"', r"headless\.sto: the joint moments has no line 'endheader'"),
+    ('file = "kinds.sto"\nangle_unit = "deg"', r"kinds\.sto: the header says that angles are in rad, moments"),
+    ('file = "plain.csv"\npedal_force = "F"', r"moments\.pedal_force is 'F'; it must be the names of two columns"),
+    ('file = "plain.csv"\npedal_force = ["x", "y"]\nknee = "M"', r"moments\.knee and moments\.pedal_force exclude"),
+    ('file = "plain.csv"\n[measured_on]\nR2 = 0.6', r"measured_on: .* cannot close .* cannot have been measured"),
+    ('file = "plain.csv"\n[measured_on]\nkind = "crt"', r"measured_on\.kind is 'crt'; it must be one of trt"),
+    ('file = "plain.csv"\n[measured_on]\ncadence_rpm = 900', r"measured_on\.cadence_rpm is 900; it must be a cadence"),
+    ('file = "plain.csv"\n[measured_on.rider]\nthigh = 52', r"measured_on\.rider\.thigh is 52; .*centimetres"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("text", "words"), REFUSED)
+def test_what_cannot_be_used_is_named(text: str, words: str, tmp_path: Path) -> None:
+    plain(tmp_path)
+    write_trial(tmp_path, SLOW, 2.4, 0.0)
+    opensim = (tmp_path / "id.sto").read_text().splitlines()
+    late = [f"{float(row.split()[0]) + 100}\t{row.split(chr(9), 1)[1]}" for row in opensim[7:]]
+    (tmp_path / "late.sto").write_text("\n".join([*opensim[:7], *late]) + "\n")
+    brief = (tmp_path / "ik.mot").read_text().splitlines()
+    (tmp_path / "brief.mot").write_text("\n".join(brief[:50]) + "\n")
+    (tmp_path / "headless.sto").write_text("time\tcrank_angle_deg\n0\t1\n")
+    (tmp_path / "kinds.sto").write_text("a\ninDegrees=no\nendheader\ntime\tcrank_angle_deg\tknee_Nm\thip_Nm\n0 1 1 1\n")
+    (tmp_path / "stuck.csv").write_text("time," + ",".join(HEADS) + "\n0,0,1,1\n1,90,2,2\n1,180,1,1\n2,270,1,1\n")
+    (tmp_path / "short.csv").write_text("time," + ",".join(HEADS) + "\n0,0,1,1\n1,100,2,2\n2,200,1,1\n")
+    with pytest.raises(InputError, match=words):
+        load_moments(described(tmp_path, f"[moments]\n{text}\n"))
+
+
+def test_each_leg_has_its_own(tmp_path: Path) -> None:
+    moments = load_moments("p1p2", "p1p3")
+    assert moments.of_leg("right_knee").name == "p1p2"
+    assert moments.of_leg("left_knee").name == "p1p3"
+
+
+def test_pedal_forces_of_a_simulation_give_its_moments_back(tmp_path: Path) -> None:
+    """Moments -> MuJoCo -> force at the pedal -> moments by inverse dynamics: the way back knows nothing of MuJoCo."""
+    design, moments = load_design("trt"), load_moments("p1p3")
+    run = simulate(design, moments)
+    force = run.loop_force["pedal"]
+    angle = np.degrees(run.crank_angle[::FORCE_EVERY])
+    (tmp_path / "pedal.csv").write_text(csv_text({"crank_angle_deg": angle, "Fx": force.real, "Fy": force.imag}))
+    linkage, rider = design.linkage, design.rider
+    path = described(
+        tmp_path,
+        '[moments]\nfile = "pedal.csv"\npedal_force = ["Fx", "Fy"]\nzero = "horizontal"\n[measured_on]\n'
+        f"R1 = [{linkage.ground.real!r}, {linkage.ground.imag!r}]\nR2 = {linkage.crank!r}\nR6 = {linkage.foot!r}\n"
+        f"seat_angle = {math.degrees(linkage.seat_angle)!r}\ngear_ratio = {linkage.gear_ratio!r}\n"
+        f"[measured_on.rider]\nthigh = {rider.thigh!r}\nshank = {rider.shank!r}\nmass = {rider.mass!r}\n",
+    )
+    found = load_measurement(path).moments
+    given = run.torque.along(kinematics.solve(design, TURN), run.cadence)
+    back = found.at(TURN - found.measured_on.top_dead_centre)
+    for joint in JOINTS:
+        error = back[joint] - given[joint]
+        assert np.sqrt(np.mean(error**2)) < 5e-3 * np.abs(given[joint]).max()
+    assert sum(found.power_mean) == pytest.approx(run.power_mean, rel=5e-3)

@@ -1,0 +1,156 @@
+"""The reduced equation of motion: against inverse dynamics, conserved energy, exact rests, and itself refined."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import fes_mj
+from fes_mj.linkage import kinematics
+from fes_mj.linkage.legs import TWO_LEGS
+from fes_mj.linkage.segments import GRAVITY
+from fes_mj.moments.drive import POINTS, drive
+from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
+from fes_mj.moments.torque_map import torque_map
+from fes_mj.moments.torque_velocity import load_torque_velocity
+from fes_mj.riding import reduced, solver as reduced_solver
+from fes_mj.riding.reduced import leg_table
+from fes_mj.riding.ride import Ride, Road, balancing_slope
+from fes_mj.riding.solver import HEIGHT_RATE, INERTIA, INERTIA_RATE, RECOIL, RECOIL_RATE
+from fes_mj.statics.inverse_dynamics import crank_moment
+
+NOTHING = Road(rolling_resistance=0.0, drag_area=0.0)
+
+
+@pytest.fixture
+def no_moments() -> fes_mj.JointMoments:
+    return fes_mj.JointMoments("none", np.array([0.0, 3.0]), np.zeros(2), np.zeros(2))
+
+
+def test_the_table_is_the_inverse_dynamics(design: fes_mj.Design, no_moments: fes_mj.JointMoments) -> None:
+    """At constant crank speed the crank takes -(dI/da w^2 / 2 + g dy/da), which inverse dynamics finds by loads."""
+    table, speed = leg_table(design, no_moments)[:-1], 9.0
+    angle = np.linspace(0, 2 * np.pi, POINTS, endpoint=False)
+    exact = sum(
+        crank_moment(kinematics.solve(design, angle - leg.lag), torque_map(no_moments), speed) for leg in TWO_LEGS
+    )
+    mine = -table[:, INERTIA_RATE] / 2 * speed**2 - GRAVITY * table[:, HEIGHT_RATE]
+    assert np.abs(mine - exact).max() < 1e-9 * np.abs(exact).max()
+
+
+def test_rates_of_the_table_are_derivatives(design: fes_mj.Design, no_moments: fes_mj.JointMoments) -> None:
+    """Fourier derivatives of I and X; the series is as good as exact but for the sharpest linkages."""
+    table, frequency = leg_table(design, no_moments)[:-1], 1j * np.fft.fftfreq(POINTS, 1 / POINTS)
+    for column, rate in ((INERTIA, INERTIA_RATE), (RECOIL, RECOIL_RATE)):
+        derivative = np.fft.ifft(frequency * np.fft.fft(table[:, column])).real
+        assert np.abs(derivative - table[:, rate]).max() < 1e-8 * np.abs(table[:, rate]).max()
+
+
+@pytest.mark.parametrize("transmission", ["fixed", "freewheel"])
+def test_energy_is_conserved_where_nothing_takes_it(transmission: str, no_moments: fes_mj.JointMoments) -> None:
+    """Kinetic and potential energy over a ride on a slope, both terms by the table alone."""
+    design = fes_mj.load_design("d1")
+    ride = Ride(design, no_moments, replace(NOTHING, slope=0.01), transmission, duration=4.0)
+    trace = reduced.ride(ride)
+    table, load = leg_table(design, no_moments), ride.load
+    at = trace.crank_angle % (2 * np.pi) * POINTS / (2 * np.pi)
+    inertia, recoil = (np.interp(at, np.arange(POINTS + 1), table[:, column]) for column in (INERTIA, RECOIL))
+    kinetic = inertia * trace.crank_speed**2 / 2 - recoil * trace.crank_speed * trace.speed
+    kinetic += load.inertia * trace.speed**2 / 2
+    rise = GRAVITY * (math.cos(ride.road.angle) * table[:, HEIGHT_RATE] - math.sin(ride.road.angle) * table[:, RECOIL])
+    height = np.concatenate([[0], np.cumsum((rise[1:] + rise[:-1]) / 2)]) * 2 * np.pi / POINTS
+    energy = kinetic + np.interp(at, np.arange(POINTS + 1), height) + load.climb * trace.distance
+    assert np.ptp(energy) < 2e-4 * kinetic[0]
+    assert np.ptp(kinetic) > 0.1 * kinetic[0]
+
+
+@pytest.mark.parametrize("transmission", ["fixed", "freewheel"])
+@pytest.mark.parametrize(("slope", "holds"), [(0.0, True), (0.006, True), (-0.006, True), (0.02, False)])
+def test_dry_friction_holds_what_it_can(
+    transmission: str, slope: float, holds: bool, no_moments: fes_mj.JointMoments
+) -> None:
+    """A TRT whose legs weigh next to nothing stands on slopes up to the rolling resistance of 0.008, and no farther."""
+    design = fes_mj.load_design("trt")
+    light = replace(design, rider=replace(design.rider, mass=1e-3))
+    road = Road(slope=slope, tricycle_mass=90.0)
+    trace = reduced.ride(Ride(light, no_moments, road, transmission, launch=0.0, duration=3.0))
+    assert not trace.rides
+    assert trace.stopped_at == 0
+    assert (trace.distance[-1] == 0) == holds
+
+
+def test_a_wheel_that_rolls_out(no_moments: fes_mj.JointMoments) -> None:
+    """Coasting with weightless legs: constant deceleration by dry friction, then rest."""
+    design = fes_mj.load_design("trt")
+    light = replace(design, rider=replace(design.rider, mass=1e-3))
+    ride = Ride(light, no_moments, Road(tricycle_mass=90.0, drag_area=0.0), launch=0.5, duration=20.0)
+    trace, load = reduced.ride(ride), ride.load
+    assert trace.stopped_at == pytest.approx(0.5 * load.inertia / load.rolling, rel=2e-3)
+    assert trace.distance[-1] == pytest.approx(0.5**2 * load.inertia / load.rolling / 2, rel=2e-3)
+
+
+def test_on_and_off_the_freewheel_at_half_the_step(monkeypatch: pytest.MonkeyPatch) -> None:
+    moments = replace(fes_mj.load_moments("p1p2"), torque_velocity=load_torque_velocity("hill"))
+    ride = Ride(fes_mj.load_design("d2"), moments, duration=6.0)
+    trace = reduced.ride(ride)
+    assert 0.3 < trace.coasting_share < 0.95
+    reduced_solver.interpreted.cache_clear()
+    monkeypatch.setattr(reduced_solver, "STEP_ANGLES", tuple(step / 2 for step in reduced_solver.STEP_ANGLES))
+    monkeypatch.setattr(reduced_solver, "STEP_TIME", reduced_solver.STEP_TIME / 2)
+    finer = reduced.ride(ride)
+    reduced_solver.interpreted.cache_clear()
+    assert trace.mean_speed == pytest.approx(finer.mean_speed, rel=1e-4)
+
+
+def test_muscles_and_road_balance(smooth_moments: fes_mj.JointMoments) -> None:
+    trace = reduced.ride(Ride(fes_mj.load_design("r1"), smooth_moments, transmission="fixed", duration=6.0))
+    gained = reduced.gained_power(trace)
+    assert trace.muscle_power is not None
+    assert trace.road_power is not None
+    assert gained is not None
+    assert trace.muscle_power == pytest.approx(trace.road_power + gained, rel=1e-3)
+
+
+@pytest.mark.parametrize("lag", [0.05, 0.1])
+def test_the_lagging_answer_is_the_map_where_it_was_measured(lag: float, smooth_moments: fes_mj.JointMoments) -> None:
+    """First-order filter of the command, harmonic by harmonic."""
+    told = drive(PAPER_TRICYCLE.design, smooth_moments, lag)
+    torque, angle = torque_map(smooth_moments), told.motion.joint_angle
+    rate, harmonic = told.motion.joint_rate, np.fft.fftfreq(POINTS, 1 / POINTS)
+    for joint, command in told.command.items():
+        filtered = np.fft.ifft(np.fft.fft(command) / (1 + 1j * harmonic * PAPER_TRICYCLE.cadence * lag)).real
+        exact = torque.moment(joint, angle[joint], rate[joint])
+        assert np.abs(filtered - exact).max() < 2e-3 * np.abs(exact).max()
+
+
+@pytest.mark.long
+def test_machine_code_rides_the_same_way() -> None:
+    pytest.importorskip("numba")
+    moments = replace(fes_mj.load_moments("p1p2"), torque_velocity=load_torque_velocity("hill"))
+    ride = Ride(fes_mj.load_design("d1"), moments, duration=3.0, lag=0.1)
+    slow, fast = (reduced.ride(ride, compiled=compiled) for compiled in (False, True))
+    assert fast.distance[-1] == pytest.approx(slow.distance[-1], rel=1e-9)
+    assert fast.crank_angle[-1] == pytest.approx(slow.crank_angle[-1], rel=1e-9)
+
+
+def test_the_steady_ripple_is_that_of_a_long_ride(smooth_moments: fes_mj.JointMoments) -> None:
+    """Closed form against integration, on a slope where the launch speed is nearly the steady one."""
+    ride = Ride(fes_mj.load_design("d1"), smooth_moments, Road(drag_area=0.0), "fixed", duration=20.0)
+    steady = replace(ride, road=replace(ride.road, slope=balancing_slope(ride)))
+    trace = reduced.ride(steady)
+    assert trace.cadence is not None
+    at_its_speed = replace(steady, launch=trace.cadence * steady.travel)
+    assert trace.ripple == pytest.approx(reduced.steady_ripple(at_its_speed), rel=0.01)
+
+
+def test_the_recoil_of_the_frame_more_than_doubles_the_ripple() -> None:
+    """D1 at 90 kg, of which all ride on the road; on a frame that is held still, as its swing of energy shows."""
+    design, moments = fes_mj.load_design("d1"), fes_mj.load_moments("p1p2")
+    ride = Ride(design, moments, Road(tricycle_mass=15.0, rolling_mass=0.0), "fixed")
+    table = leg_table(design, moments).copy()
+    table[:, RECOIL] = 0.0
+    recoiling = reduced.steady_ripple(ride)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(reduced, "leg_table", lambda *_: table)
+        assert recoiling > 2 * reduced.steady_ripple(ride)

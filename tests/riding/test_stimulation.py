@@ -1,0 +1,115 @@
+"""The windows against exact geometry and finite differences of the joint angles, and what is written of them."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+
+import numpy as np
+import pytest
+
+import fes_mj
+from fes_mj.common.units import RPM
+from fes_mj.linkage.assembly import joint_ranges, top_dead_centre
+from fes_mj.linkage.kinematics import solve
+from fes_mj.riding.stimulation import CORE, LEAST_SHARE, MUSCLES, Window, stimulation, summary, table_csv
+
+
+def of(windows: list[Window], muscle: str, leg: str = "right") -> list[Window]:
+    return [each for each in windows if (each.muscle, each.leg) == (muscle, leg)]
+
+
+def test_the_knee_of_a_four_bar_extends_from_its_nearest_to_its_farthest_pedal() -> None:
+    """Exact: the crank is then in line with the hip, so half a turn apart."""
+    trt = fes_mj.load_design("trt")
+    (quadriceps,), (hamstrings,) = (of(stimulation(trt, [6.0]), muscle) for muscle in ("quadriceps", "hamstrings"))
+    inwards = float(np.angle(-trt.linkage.crank_centre)) % (2 * math.pi)
+    assert quadriceps.works == pytest.approx((inwards, inwards + math.pi), abs=1e-6)
+    assert quadriceps.works[0] == pytest.approx(top_dead_centre(trt), abs=1e-6)
+    assert hamstrings.works[0] == pytest.approx(quadriceps.works[1], abs=1e-6)
+    assert hamstrings.width == pytest.approx(math.pi, abs=1e-6)
+
+
+@pytest.mark.parametrize(("leg", "lag"), [("right", 0.0), ("left", math.pi)])
+def test_a_moment_drives_the_crank_inside_and_brakes_it_outside(design: fes_mj.Design, leg: str, lag: float) -> None:
+    """Work of a unit moment between angles 0.36 deg apart: positive inside, and outside no more than is left out."""
+    ends = np.linspace(0, 2 * np.pi, 1001) - lag
+    middles, joints = (ends[1:] + ends[:-1]) / 2 + lag, solve(design, ends).joint_angle
+    windows = stimulation(design, [5.0])
+    for name, muscle in MUSCLES.items():
+        work = muscle.sense * np.diff(joints[muscle.joint])
+        inside, near = np.zeros((2, len(middles)), bool)
+        for window in of(windows, name, leg):
+            inside |= (middles - window.works[0]) % (2 * np.pi) < window.width
+            for end in window.works:
+                near |= np.abs((middles - end + np.pi) % (2 * np.pi) - np.pi) < 0.01
+        assert (work[inside & ~near] > 0).all()
+        left_out = work[~inside & ~near]
+        assert left_out[left_out > 0].sum() < LEAST_SHARE * work[work > 0].sum()
+        assert (left_out < 0).mean() > 0.8
+
+
+def test_swing_and_core(design: fes_mj.Design) -> None:
+    windows, ranges = stimulation(design, [5.0]), np.radians(joint_ranges(design))
+    # what extends comes back, but for what is left out
+    extended, flexed = (sum(each.swing for each in of(windows, muscle)) for muscle in ("quadriceps", "hamstrings"))
+    assert extended == pytest.approx(flexed, rel=LEAST_SHARE)
+    assert max(each.swing for each in of(windows, "quadriceps")) <= ranges[1] - ranges[0] + 1e-5
+    assert max(each.swing for each in of(windows, "gluteus")) == pytest.approx(ranges[3] - ranges[2], rel=1e-3)
+    for each in windows:
+        assert each.works[0] < each.core[0] < each.core[1] < each.works[1]
+        joint, behind = MUSCLES[each.muscle].joint, math.pi if each.leg == "left" else 0.0
+        ends, all_along = (
+            np.abs(solve(design, angles - behind).joint_rate[joint])
+            for angles in (np.array(each.core), np.linspace(*each.works, 5000))
+        )
+        assert ends == pytest.approx(CORE * all_along.max(), rel=0.02)
+
+
+def test_the_lag_turns_every_window_back_by_what_the_crank_turns_in_it() -> None:
+    d1 = fes_mj.load_design("d1")
+    cadences = [40 * RPM, 90 * RPM]
+    plain, led = stimulation(d1, cadences), stimulation(d1, cadences, lag=0.1)
+    assert [each.works for each in plain] == [each.works for each in led]
+    for each in led:
+        found = each.record(d1)
+        turned = (np.array(found["works_deg"]) - found["stimulate_deg"]) % 360
+        assert turned == pytest.approx(0.1 * found["cadence_rpm"] * 6)  # a rpm is 6 deg/s
+        assert found["lead_deg"] == pytest.approx(360 * 0.1 * found["cadence_Hz"])
+        top = math.degrees(top_dead_centre(d1))
+        for name in ("stimulate", "stimulate_core"):
+            zeros = (np.array(found[f"{name}_deg"]) - found[f"{name}_from_tdc_deg"] - top) % 360
+            assert np.minimum(zeros, 360 - zeros) == pytest.approx(0, abs=1e-9)
+
+
+def test_the_left_leg_follows_half_a_turn_later(design: fes_mj.Design) -> None:
+    windows = stimulation(design, [5.0])
+    for muscle in MUSCLES:
+        right, left = (of(windows, muscle, leg) for leg in ("right", "left"))
+        starts = [sorted(each.works[0] % (2 * np.pi) for each in legs) for legs in (right, left)]
+        assert starts[1] == pytest.approx(sorted((start + math.pi) % (2 * math.pi) for start in starts[0]))
+        assert all(0 <= each.works[0] < 2 * np.pi for each in (*right, *left))
+
+
+def test_hamstrings_help_at_the_hip_where_it_extends() -> None:
+    """In the TRT the two joints' windows are all there is to overlap."""
+    trt = fes_mj.load_design("trt")
+    windows = stimulation(trt, [6.0])
+    (hamstrings,), (gluteus,) = of(windows, "hamstrings"), of(windows, "gluteus")
+    overlap = gluteus.works[1] - hamstrings.works[0]
+    assert hamstrings.both_joints == pytest.approx(overlap, abs=2e-3)
+    assert gluteus.both_joints is None
+
+
+def test_table_and_json_say_the_same() -> None:
+    d1 = fes_mj.load_design("d1")
+    windows = stimulation(d1, [60 * RPM], 0.1)
+    records, rows = summary(d1, windows)["windows"], [*csv.DictReader(io.StringIO(table_csv(d1, windows)))]
+    assert len(rows) == len(records) == 8  # the hip of D1 extends twice a turn
+    for record, row in zip(records, rows, strict=True):
+        for name in ("works", "core", "stimulate", "stimulate_from_tdc"):
+            pair = float(row[f"{name}_on_deg"]), float(row[f"{name}_off_deg"])
+            assert pair == pytest.approx(record[f"{name}_deg"], abs=0.0051)
+        assert float(row["cadence_Hz"]) == pytest.approx(1.0)
+        assert (row["muscle"], row["leg"]) == (record["muscle"], record["leg"])

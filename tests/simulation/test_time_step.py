@@ -1,0 +1,90 @@
+"""The step is chosen beforehand: what is predicted is what is measured, and what cannot be run is refused."""
+
+from dataclasses import replace
+
+import mujoco
+import numpy as np
+import pytest
+
+import fes_mj
+from fes_mj.common.errors import InputError
+from fes_mj.common.units import RPM
+from fes_mj.crosscheck.turn_case import Case
+from fes_mj.linkage.assembly import clearances
+from fes_mj.simulation.time_step import FEWEST_STEPS, LOOSE_STEPS, MOST_STEPS, loose_steps, steps_per_turn
+from tools.random_linkages import random_design
+
+
+def test_the_step_follows_the_sharpness_of_the_motion() -> None:
+    d2 = fes_mj.load_design("d2")
+    assert steps_per_turn(d2, 10 * RPM) == FEWEST_STEPS
+    assert steps_per_turn(d2, 200 * RPM) > FEWEST_STEPS
+    sharp = fes_mj.load_design("trt")  # the leg comes within a millimetre of stretching
+    reach = sharp.rider.thigh + float(sharp.knee_to_pedal)
+    far = abs(sharp.linkage.crank_centre) + sharp.linkage.crank
+    stretched = replace(sharp, linkage=replace(sharp.linkage, ground=sharp.linkage.ground * (reach - 1e-3) / far))
+    assert steps_per_turn(stretched, 60 * RPM) == FEWEST_STEPS
+    closer = replace(sharp, linkage=replace(sharp.linkage, crank=reach - 1.1e-4 - abs(sharp.linkage.crank_centre)))
+    assert steps_per_turn(closer, 60 * RPM) > 2 * FEWEST_STEPS
+
+
+def test_a_step_that_is_asked_for_is_a_whole_number_of_a_turn() -> None:
+    assert steps_per_turn(fes_mj.load_design("d1"), 10.0, 1e-3) == round(2 * np.pi / 10 / 1e-3)
+
+
+def test_what_does_not_fit_into_memory_is_refused_with_a_way_out() -> None:
+    d1 = fes_mj.load_design("d1")
+    most = MOST_STEPS // FEWEST_STEPS
+    assert steps_per_turn(d1, 10.0, turns=most) == FEWEST_STEPS
+    with pytest.raises(fes_mj.InputError, match=f"needs {most + 1} x 2,880 time steps, .*; give at most {most} turns"):
+        steps_per_turn(d1, 10.0, turns=most + 1)
+    with pytest.raises(fes_mj.InputError, match="give fewer turns or a longer --timestep"):
+        steps_per_turn(d1, 10.0, 1e-7)
+
+
+def test_what_moves_too_sharply_is_refused_before_it_runs() -> None:
+    edge = random_design(np.random.default_rng(776))  # both dyads 0.2 mm from their dead centres
+    assert max(each.margin[0] for each in clearances(edge)) < 2.1e-4
+    with pytest.raises(fes_mj.InputError, match=r"random: at 200 rpm the run needs .*slower --cadence"):
+        steps_per_turn(edge, 200 * RPM)
+    assert steps_per_turn(edge, 20 * RPM) < MOST_STEPS
+
+
+def test_the_near_edge_of_closing_agrees() -> None:
+    """A leg that comes within 0.5 mm of stretching at 150 rpm, moments that follow a thorny curve."""
+    trt, angle = fes_mj.load_design("trt"), np.radians(np.arange(0, 360, 0.25))
+    crank = trt.rider.thigh + float(trt.knee_to_pedal) - abs(trt.linkage.crank_centre) - 5e-4
+    edge = replace(trt, linkage=replace(trt.linkage, crank=crank))
+    moments = fes_mj.JointMoments("thorny", angle, 12 * np.cos(angle) + 3 * np.sin(7 * angle), 6 * np.sin(angle))
+    case = Case(edge, moments, cadence=150 * RPM)
+    assert case.agrees, [check for check in case.checks if not check.ok]
+
+
+@pytest.mark.parametrize("legs", [1, 2])
+@pytest.mark.parametrize("name", ["r1", "d2"])
+def test_the_steps_of_a_loose_crank_know_its_fastest_speed(name: str, legs: int) -> None:
+    """A turn in MuJoCo, or as far as it swings, is an independent way to the fastest speed."""
+    design = fes_mj.load_design(name)
+    cadence, steps = design.linkage.cadence, loose_steps(design, design.linkage.cadence, legs)
+    model = fes_mj.build_mjcf(design, legs=legs, driven=False, drawn=False).compile()
+    assert model.opt.timestep == pytest.approx(2 * np.pi / cadence / steps)
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    fastest, crank = 0.0, data.joint("crank")
+    while data.time < 3 and abs(crank.qpos[0]) < 2 * np.pi:
+        mujoco.mj_step(model, data)
+        fastest = max(fastest, abs(float(crank.qvel[0])))
+    assert LOOSE_STEPS * fastest / cadence == pytest.approx(steps, rel=2e-3)
+
+
+def test_without_weight_a_loose_crank_is_slower() -> None:
+    design = fes_mj.load_design("trt")
+    counts = [loose_steps(design, design.linkage.cadence, gravity=gravity) for gravity in (9.81, 4.9, 0.0)]
+    assert counts == sorted(counts, reverse=True)
+    assert counts[0] > counts[-1]
+
+
+def test_a_loose_crank_near_a_dead_centre_is_refused() -> None:
+    design = fes_mj.load_design("r2")
+    with pytest.raises(InputError, match="a loose crank would reach"):
+        loose_steps(design, design.linkage.cadence, gravity=1e9)

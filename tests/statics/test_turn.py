@@ -1,0 +1,70 @@
+"""Free-body equilibrium against virtual work, the paper's own equations and the definition of power."""
+
+import numpy as np
+import pytest
+
+from fes_mj import quasi_static
+from fes_mj.linkage.design import Design
+from fes_mj.moments.joint_moments import JointMoments
+from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
+from fes_mj.statics.turn import equilibrium, virtual_work
+
+
+def test_equilibrium_is_virtual_work(design: Design, moments: JointMoments) -> None:
+    result = quasi_static(design, moments)
+    work = virtual_work(result.motion, result.joint_moment)
+    assert np.abs(result.crank_moment - work).max() < 1e-9 * np.abs(work).max()
+
+
+def test_reactions_balance_every_body(design: Design, smooth_moments: JointMoments) -> None:
+    """Force balance of each body, and the shank's moments about the knee, from the reactions alone."""
+    result = quasi_static(design, smooth_moments)
+    joints, points = design.linkage.architecture.joints, result.motion.points
+    for body in design.linkage.architecture.bodies:
+        forces = [
+            (1 if pair[1] == body else -1) * result.reactions[point] for point, pair in joints.items() if body in pair
+        ]
+        assert np.abs(np.sum(forces, axis=0)).max() < 1e-9
+    arm = points["pedal"].value - points["knee"].value
+    on_shank = -result.reactions["pedal"]  # the shank is the first body of the pedal joint
+    assert np.abs((np.conj(arm) * on_shank).imag - result.joint_moment.knee).max() < 1e-9
+
+
+def test_the_corrected_equation_4_gives_the_same_crank_moment(smooth_moments: JointMoments) -> None:
+    """Eq. 4 with R4 on both terms, M_k in the first row and the shank's sign turned, solved by hand."""
+    result = quasi_static(PAPER_TRICYCLE.design, smooth_moments, points=360)
+    motion, linkage, rider = result.motion, PAPER_TRICYCLE.design.linkage, PAPER_TRICYCLE.design.rider
+    thigh, shank, crank = (motion.direction(body) for body in ("thigh", "shank", "crank"))
+    r4, r3 = rider.thigh, PAPER_TRICYCLE.design.knee_to_pedal
+    matrix = np.array([[r4 * thigh.imag, -r4 * thigh.real], [r3 * shank.imag, -r3 * shank.real]]).transpose(2, 0, 1)
+    right = np.stack([result.joint_moment.hip + result.joint_moment.knee, -result.joint_moment.knee], axis=1)
+    force_x, force_y = np.linalg.solve(matrix, right[..., None])[..., 0].T
+    crank_moment = linkage.crank * (force_x * crank.imag - force_y * crank.real)
+    assert np.abs(crank_moment - result.crank_moment).max() < 1e-9
+
+
+def test_power_in_the_reference_is_joint_power_at_the_crank_angle(smooth_moments: JointMoments) -> None:
+    result = quasi_static(PAPER_TRICYCLE.design, smooth_moments)
+    source = result.crank_angle - PAPER_TRICYCLE.top_dead_centre
+    knee, hip = (
+        np.interp(source, smooth_moments.crank_angle, getattr(smooth_moments, joint), period=2 * np.pi)
+        for joint in ("knee", "hip")
+    )
+    power = result.cadence * (knee * result.motion.joint_rate.knee + hip * result.motion.joint_rate.hip)
+    assert result.power_mean == pytest.approx(power.mean(), rel=1e-5)
+    assert result.work_per_turn == pytest.approx(result.power_mean * 2 * np.pi / result.cadence, rel=1e-12)
+
+
+def test_the_mean_does_not_depend_on_the_number_of_points(design: Design, moments: JointMoments) -> None:
+    coarse, fine = (quasi_static(design, moments, points=points).power_mean for points in (3600, 36_000))
+    assert coarse == pytest.approx(fine, rel=1e-5)
+
+
+def test_loads_enter_equilibrium_as_they_enter_virtual_work(design: Design, smooth_moments: JointMoments) -> None:
+    from fes_mj.linkage.loads import body_loads
+
+    result = quasi_static(design, smooth_moments, points=360)
+    loads = body_loads(result.motion, result.cadence)
+    moment, _ = equilibrium(result.motion, result.joint_moment, loads)
+    work = virtual_work(result.motion, result.joint_moment, loads)
+    assert np.abs(moment - work).max() < 1e-9 * np.abs(work).max()
