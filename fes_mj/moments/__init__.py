@@ -1,1 +1,1 @@
-"""Joint moments over crank angle, where they come from and how sure they are, and the map that makes them joint angles'."""
+"""Joint moments over crank angle, their sources and errors, and the map that makes them moments of joint angles."""
