@@ -11,7 +11,7 @@ from fes_mj.linkage import kinematics
 from fes_mj.linkage.design import ARCHITECTURES, Design, Linkage, Rider
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
-from fes_mj.statics.extrapolation import require_motion
+from fes_mj.statics.extrapolation import turning_in_range
 
 NEAREST, FARTHEST = 1.5e-4, 0.03  # m from the nearest dead centre
 FINE = np.linspace(0, 2 * np.pi, 7200, endpoint=False)
@@ -85,7 +85,7 @@ def _seated(rng: np.random.Generator, design: Design, margin: float, direction: 
     seat_angle = float(thigh - rng.uniform(*PAPER_TRICYCLE.ranges.hip))
     design = replace(design, linkage=replace(design.linkage, seat_angle=seat_angle))
     try:
-        require_motion(design, PAPER_TRICYCLE)
+        turning_in_range(design, PAPER_TRICYCLE)
     except InputError:
         return None
     return design

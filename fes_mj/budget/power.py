@@ -19,11 +19,11 @@ from fes_mj.budget.unknowns import (
 )
 from fes_mj.common.arrays import BoolArray, FloatArray, IntArray
 from fes_mj.linkage import kinematics
-from fes_mj.linkage.assembly import SCAN, obstacles, span_limits
-from fes_mj.linkage.batch import batch_size
+from fes_mj.linkage.assembly import SCAN
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.joints import JOINTS
 from fes_mj.linkage.kinematics import Motion
+from fes_mj.linkage.turning import batch_turning, leg_reach
 from fes_mj.linkage.variables import replaced
 from fes_mj.moments.drive import commanded
 from fes_mj.moments.fourier import HARMONICS
@@ -130,10 +130,6 @@ def _answer(command: FloatArray, lag: FloatArray, cadence: float, measured: floa
 
 def _turns(motion: Motion) -> BoolArray:
     """Whether the designs of a motion over SCAN turn, as every command decides; shape (designs,), or (1,)."""
-    design = motion.design
-    distance = np.atleast_2d(np.abs(motion.points["pedal"].value))
-    shortest, longest = span_limits(design, ("thigh", "shank"))
-    reach = np.minimum(longest - distance.max(axis=1), distance.min(axis=1) - shortest)
-    reach = np.array(np.broadcast_to(reach, batch_size(design)))
+    reach = leg_reach(motion.design, motion.points["pedal"].value)
     swing = np.ptp(np.atleast_2d(motion.joint_angle.hip), axis=1)
-    return np.asarray(~np.logical_or.reduce([*obstacles(design, reach, swing).values()]))
+    return batch_turning(motion.design, reach, swing).turns

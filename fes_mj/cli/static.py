@@ -11,8 +11,8 @@ from fes_mj.cli.options import RunOptions
 from fes_mj.common.console import conclude, print_table, say
 from fes_mj.common.units import RPM
 from fes_mj.common.writing import json_text
-from fes_mj.linkage.assembly import CRANK_ZERO, FROM_TOP, degrees_from_top
 from fes_mj.linkage.design import Design
+from fes_mj.linkage.turning import CRANK_ZERO, FROM_TOP, turning
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.statics.joint_forces import NET_FORCE, JointForces, KneeLoad, peaks
 from fes_mj.statics.turn import QuasiStatic, quasi_static
@@ -131,7 +131,7 @@ def _curves(result: QuasiStatic) -> dict[str, Any]:
     degrees = np.degrees(result.crank_angle)
     return {
         "crank_angle_deg": degrees.round(),  # whole degrees, but for rounding
-        FROM_TOP: degrees_from_top(result.design, result.crank_angle),
+        FROM_TOP: turning(result.design).degrees_from_top(result.crank_angle),
         "crank_moment_Nm": result.crank_moment,
         **{f"{joint}_deg": np.degrees(angle) for joint, angle in result.joint_angle.items()},
         **{f"{joint}_Nm": moment for joint, moment in result.joint_moment.items()},

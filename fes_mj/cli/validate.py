@@ -19,7 +19,7 @@ from fes_mj.common.errors import InputError
 from fes_mj.common.provenance import provenance
 from fes_mj.common.writing import json_text, require_writable, write_text
 from fes_mj.linkage.design_file import DESIGNS
-from fes_mj.statics.extrapolation import require_motion
+from fes_mj.statics.extrapolation import turning_in_range
 
 if TYPE_CHECKING:
     from fes_mj.verification.case import VerificationCase
@@ -89,7 +89,7 @@ def _cases(designs: Sequence[str], options: RunOptions, quick: bool) -> Iterator
         printed = table1()[design] if design in DESIGNS and options.dims == "identified" else None
         for choice in chosen:
             case = VerificationCase(*choice.load(design), expected=printed, refined=not quick)
-            require_motion(case.design, case.moments.measured_on)
+            turning_in_range(case.design, case.moments.measured_on)
             yield case
 
 

@@ -12,19 +12,19 @@ from fes_mj.common.arrays import ComplexArray, FloatArray
 from fes_mj.common.checks import LEAST_POWER, Check, check
 from fes_mj.common.writing import csv_text
 from fes_mj.linkage import kinematics
-from fes_mj.linkage.assembly import FROM_TOP, degrees_from_top
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.joints import PerJoint
 from fes_mj.linkage.kinematics import Motion
 from fes_mj.linkage.loads import Load, body_loads
 from fes_mj.linkage.segments import GRAVITY
+from fes_mj.linkage.turning import FROM_TOP, turning
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.torque_map import TorqueMap, torque_map
 from fes_mj.simulation.appearance import Spec
 from fes_mj.simulation.bench import Simulation, simulate
 from fes_mj.simulation.mjcf import build_mjcf
 from fes_mj.statics.characteristics import power_characteristics
-from fes_mj.statics.extrapolation import require_motion
+from fes_mj.statics.extrapolation import turning_in_range
 from fes_mj.statics.joint_forces import JointForces
 from fes_mj.statics.turn import TURN_POINTS, QuasiStatic, equilibrium, virtual_work
 
@@ -111,7 +111,7 @@ class Case:
     def static_at(self, points: int, leg: str = "") -> QuasiStatic:
         """The quasi-static turn at another number of crank angles, or of the leg with this name prefix."""
         torque = self.torque.of(leg)
-        require_motion(self.design, torque.reference)
+        turning_in_range(self.design, torque.reference)
         motion = self.motion(np.linspace(0, 2 * np.pi, points, endpoint=False))
         joint_moment = self.joint_moment(motion, leg)
         return QuasiStatic(motion, torque, self.cadence, joint_moment, *self.equilibrium(motion, joint_moment))
@@ -246,7 +246,7 @@ class Case:
         return csv_text(
             {
                 "crank_angle_deg": np.degrees(run.crank_angle),
-                FROM_TOP: degrees_from_top(self.design, run.crank_angle),
+                FROM_TOP: turning(self.design).degrees_from_top(run.crank_angle),
                 "crank_power_W": run.power,
                 "inverse_dynamics_power_W": self.reference_power(),
                 "quasi_static_power_W": self.reference_power(mass_scale=0.0),

@@ -13,8 +13,9 @@ import numpy as np
 
 from fes_mj.common.arrays import BoolArray, FloatArray
 from fes_mj.common.errors import InputError
-from fes_mj.linkage.assembly import LEAST_CLEARANCE, grashof_margin, require_assembly
+from fes_mj.linkage.assembly import LEAST_CLEARANCE, grashof_margin
 from fes_mj.linkage.design import Design, Rider
+from fes_mj.linkage.turning import turning
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.statics.cycles import Cycles, WorkTable, cycles
 from fes_mj.statics.turn import QuasiStatic, quasi_static
@@ -86,7 +87,7 @@ def score(design: Design, table: WorkTable) -> Scores:
     turn = cycles(design, table)
     outside, inside = _outside(turn)
     power = turn.work[:, 0] * np.ravel(design.linkage.cadence) / (2 * np.pi)
-    merit = np.where(turn.turns, power - OUTSIDE_COST * np.degrees(outside), _NO_TURN + turn.reach)
+    merit = np.where(turn.turns, power - OUTSIDE_COST * np.degrees(outside), _NO_TURN + turn.turning.reach)
     return Scores(turn.turns & inside, outside, power, merit)
 
 
@@ -114,7 +115,7 @@ def best_seats(
     Raises AssemblyError for a linkage that cannot turn whoever sits where.
     """
     if "coupler" in design.linkage.architecture.bodies and grashof_margin(design)[0] < LEAST_CLEARANCE:
-        require_assembly(design)
+        turning(design)
     low, high = (np.array(ends) for ends in zip(*limits, strict=True))
     axes = [np.linspace(*ends, count) for ends, count in zip(limits, _GRID, strict=True)]
     grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)

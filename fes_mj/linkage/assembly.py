@@ -1,11 +1,10 @@
-"""A linkage before any force acts: does it turn, how far do its joints go, how well does it transmit?"""
+"""A linkage before any force acts: how far from its dead centres, how far do its joints go, how does it transmit?"""
 
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from fes_mj.common.arrays import BoolArray, ComplexArray, FloatArray
-from fes_mj.common.errors import AssemblyError
+from fes_mj.common.arrays import ComplexArray, FloatArray
 from fes_mj.linkage.batch import batch_size, take
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.kinematics import FULL_TURN, Motion, Points, joint_angles, positions, solve
@@ -19,12 +18,9 @@ DYADS = {
 # time step runs into rounding at high speed; results/time_step.md has what agrees from 0.15 mm on.
 LEAST_CLEARANCE = 1e-4
 # Angles between which the extremes of the leg's span are sought. A rocker LEAST_CLEARANCE from its dead centre passes
-# it within 2 deg, in which the pedal moves by a few millimetres: less than _NEAR, within which extremes are exact.
+# it within 2 deg, in which the pedal moves by a few millimetres: less than NEAR, within which extremes are exact.
 SCAN = np.linspace(0.0, 2 * np.pi, 120, endpoint=False)
-_NEAR = 0.01  # m
-CRANK_ZERO = "the crank points backwards (+x)"  # where every crank angle that is printed begins
-FROM_TOP = "crank_angle_from_tdc_deg"  # the name of such angles in files
-LARGEST_SWING = np.pi  # rad, of the thigh: more than any hip can do
+NEAR = 0.01  # m
 _ITERATIONS = 20  # halving the steps of SCAN, where Newton does not help, leaves 5e-8 rad
 
 
@@ -50,10 +46,11 @@ def clearances(design: Design, points: Points | None = None) -> list[Clearance]:
     if "coupler" not in linkage.architecture.bodies:
         return [_clearance(design, ("thigh", "shank"), *_of_circle(linkage.crank_centre, linkage.crank))]
     pedal = np.atleast_2d((points or positions(design, SCAN))["pedal"])
-    return [_rocker_clearance(design), _clearance(design, ("thigh", "shank"), *_of_pedal(design, pedal))]
+    return [rocker_clearance(design), _clearance(design, ("thigh", "shank"), *_of_pedal(design, pedal))]
 
 
-def _rocker_clearance(design: Design) -> Clearance:
+def rocker_clearance(design: Design) -> Clearance:
+    """Clearance of the rocker and the coupler of a six-bar."""
     circle = _of_circle(design.linkage.pivot_to_crank, design.linkage.crank)
     return _clearance(design, ("rocker", "coupler"), *circle)
 
@@ -75,10 +72,10 @@ def _of_pedal(design: Design, pedal: ComplexArray) -> tuple[FloatArray, FloatArr
     for end, sign in enumerate((-1, 1)):  # every local extreme that could be the one
         height = sign * distance
         peak = (height >= np.roll(height, 1, axis=1)) & (height > np.roll(height, -1, axis=1))
-        peak &= (margins[end][:, None] < _NEAR) & (height > sign * spans[end][:, None] - _NEAR)
+        peak &= (margins[end][:, None] < NEAR) & (height > sign * spans[end][:, None] - NEAR)
         rows, columns = np.nonzero(peak)
         if rows.size:
-            exact_angle = _extreme(take(design, rows), SCAN[columns], sign)
+            exact_angle = pedal_extreme(take(design, rows), SCAN[columns], sign)
             exact = np.abs(positions(take(design, rows), exact_angle)["pedal"])[:, 0]
             for row, value, angle in zip(rows, exact, exact_angle[:, 0], strict=True):
                 if not sign * value < sign * spans[end, row]:
@@ -86,7 +83,7 @@ def _of_pedal(design: Design, pedal: ComplexArray) -> tuple[FloatArray, FloatArr
     return spans, angles
 
 
-def _extreme(design: Design, angle: FloatArray, sign: int) -> FloatArray:
+def pedal_extreme(design: Design, angle: FloatArray, sign: int) -> FloatArray:
     """Crank angles, shape (designs, 1), within a step of `angle` where the pedal's distance stops to grow (sign 1)."""
     angle = angle[:, None]
     low, high = angle - SCAN[1], angle + SCAN[1]
@@ -116,73 +113,6 @@ def span_limits(design: Design, links: tuple[str, str]) -> tuple[FloatArray, Flo
     return np.abs(first - second), first + second
 
 
-def obstacles(design: Design, reach: FloatArray, swing: FloatArray) -> dict[str, BoolArray]:
-    """Why designs of a batch do not turn right round, as require_assembly decides: reason -> which, shape (designs,).
-
-    The first reason that holds counts. reach: clearance of the leg at SCAN, m, made exact where it is small. swing: of
-    the thigh, rad.
-    """
-    found = {}
-    if "coupler" in design.linkage.architecture.bodies:
-        found = _shortfalls(("rocker", "coupler"), _rocker_clearance(design).margin)
-    turns = (reach > 0) & (swing < LARGEST_SWING)
-    for which in found.values():
-        turns = turns & ~which
-    doubtful = np.flatnonzero(turns & (reach < _NEAR))
-    if doubtful.size:
-        reach[doubtful] = clearances(take(design, doubtful))[-1].margin
-    found |= _shortfalls(("thigh", "shank"), reach)
-    found[f"the thigh swings through {np.degrees(LARGEST_SWING):.0f} deg or more"] = swing >= LARGEST_SWING
-    return {reason: np.broadcast_to(which, reach.shape) for reason, which in found.items()}
-
-
-def _shortfalls(links: tuple[str, str], margin: FloatArray) -> dict[str, BoolArray]:
-    """Why a dyad with such a clearance (m, shape (designs,)) cannot turn: reason -> which designs."""
-    pair = " and ".join(links)
-    return {
-        f"{pair} cannot close": ~(margin >= 0),
-        f"{pair} within {1e3 * LEAST_CLEARANCE:g} mm of a dead centre": (margin >= 0) & (margin < LEAST_CLEARANCE),
-    }
-
-
-def require_assembly(design: Design) -> None:
-    """Raise AssemblyError, naming links, crank angle and margin, unless the linkage turns right round."""
-    points = positions(design, SCAN)
-    for links, margin, span, angle in clearances(design, points):
-        for reason in (reason for reason, holds in _shortfalls(links, margin).items() if holds[0]):
-            start, end, _ = (name.replace("_", " ") for name in DYADS[links])
-            shortest, longest = (float(length[0]) for length in span_limits(design, links))
-            where = f"at crank angle {np.degrees(angle[0]):.1f} deg"
-            apart = (
-                f"{start} and {end} are {span[0]:.4f} m apart there, the two links reach from {shortest:.4f} to "
-                f"{longest:.4f} m"
-            )
-            if margin[0] < 0:
-                raise AssemblyError(f"{design.name}: {reason} {where}: {apart}; {-1e3 * margin[0]:.4g} mm lack")
-            state = "in line" if span[0] > (shortest + longest) / 2 else "folded flat"
-            raise AssemblyError(
-                f"{design.name}: {reason} {where}: {apart}; {1e3 * margin[0]:.2g} mm from being {state}, where the "
-                f"motion is not determined; {1e3 * LEAST_CLEARANCE:g} mm are needed"
-            )
-    swing = float(np.ptp(joint_angles(design, points).hip))
-    if swing >= LARGEST_SWING:
-        raise AssemblyError(
-            f"{design.name}: the thigh swings through {np.degrees(swing):.0f} deg; no hip moves by "
-            f"{np.degrees(LARGEST_SWING):.0f} deg or more"
-        )
-
-
-def top_dead_centre(design: Design) -> float:
-    """Crank angle at which the leg is bent most, the pedal nearest to the hip, rad within [0, 2 pi)."""
-    nearest = int(np.abs(positions(design, SCAN)["pedal"]).argmin())
-    return float(_extreme(design, SCAN[[nearest]], -1)[0, 0]) % (2 * np.pi)
-
-
-def degrees_from_top(design: Design, crank_angle: FloatArray) -> FloatArray:
-    """Crank angles (rad from the crank pointing backwards) from top dead centre, deg within [0, 360)."""
-    return np.asarray(np.degrees(crank_angle - top_dead_centre(design)) % 360)
-
-
 def joint_ranges(design: Design, crank_angle: FloatArray = FULL_TURN) -> FloatArray:
     """Knee minimum and maximum, hip minimum and maximum, deg; NaN if it cannot close.
 
@@ -198,7 +128,7 @@ def grashof_margin(design: Design) -> FloatArray:
 
     The same as the rocker dyad's clearance. Shape (designs,), (1,) for a single design.
     """
-    return _rocker_clearance(design).margin
+    return rocker_clearance(design).margin
 
 
 def transmission_angles(motion: Motion) -> dict[str, FloatArray]:

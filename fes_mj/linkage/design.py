@@ -126,6 +126,12 @@ class Design:
         return replace(self, linkage=replace(self.linkage, **linkage), rider=replace(self.rider, **rider))
 
     @property
+    def is_batch(self) -> bool:
+        """Whether any number of the linkage or the rider is an array, of shape (designs, 1)."""
+        numbers = (*vars(self.linkage).values(), *vars(self.rider).values())
+        return any(isinstance(number, np.ndarray) for number in numbers)
+
+    @property
     def knee_to_pedal(self) -> Any:
         """Length R3 of shank and boot as one link, m; of a batch an array."""
         return np.hypot(self.rider.shank, self.linkage.foot)

@@ -12,11 +12,11 @@ from fes_mj.common.errors import AssemblyError, InputError
 from fes_mj.common.reading import Section, Table, read_toml
 from fes_mj.common.units import RPM
 from fes_mj.linkage import kinematics
-from fes_mj.linkage.assembly import require_assembly
 from fes_mj.linkage.design_file import read_values
 from fes_mj.linkage.joints import JOINTS, PerJoint
 from fes_mj.linkage.loads import leg_moments
 from fes_mj.linkage.segments import DE_LEVA
+from fes_mj.linkage.turning import turning
 from fes_mj.linkage.variables import VARIABLES
 from fes_mj.moments.joint_moments import Misreading
 from fes_mj.moments.misreading import odd_angles
@@ -240,7 +240,7 @@ def _measured_on(section: Section) -> ReferenceTricycle:
     if "cadence_rpm" in section.content:
         cadence = section.number("cadence_rpm", allowed.low, allowed.high, allowed.allowed) * RPM
     try:
-        require_assembly(replace(own, name=f"{section.path}: measured_on"))
+        turning(replace(own, name=f"{section.path}: measured_on"))
     except AssemblyError as error:
         raise InputError(f"{error}; moments cannot have been measured on it") from None
     return ReferenceTricycle(own, cadence)

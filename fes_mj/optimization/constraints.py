@@ -90,7 +90,7 @@ def motion_values(
     ranges = [np.degrees(side[joint]) for joint in JOINTS for side in (turn.low, turn.high)]
     rates = (speeds[joint] * gear_ratio for joint in JOINTS)
     overlaps = (_overlap(joint, turn, reference) for joint in JOINTS)
-    return np.column_stack([turn.reach, *ranges, *rates, *overlaps, gear_ratio, gear_ratio])
+    return np.column_stack([turn.turning.reach, *ranges, *rates, *overlaps, gear_ratio, gear_ratio])
 
 
 def _overlap(joint: str, turn: Cycles, reference: ReferenceTricycle) -> FloatArray:

@@ -10,8 +10,9 @@ import numpy as np
 from fes_mj.common.arrays import FloatArray
 from fes_mj.common.errors import AssemblyError
 from fes_mj.common.markdown import Table
-from fes_mj.linkage.assembly import grashof_margin, joint_ranges, require_assembly
+from fes_mj.linkage.assembly import grashof_margin, joint_ranges
 from fes_mj.linkage.design_file import load_design
+from fes_mj.linkage.turning import turning
 from fes_mj.linkage.variables import LENGTHS, lengths
 from fes_mj.paper.captions import captioned
 from fes_mj.paper.identification import COUPLER_ANGLE, SEAT_ANGLE, identify, range_misfit
@@ -90,7 +91,7 @@ def ranges_table() -> Table:
         for dims in ("printed", "identified"):
             design = load_design(name, dims)
             try:
-                require_assembly(design)
+                turning(design)
                 ranges = [float(value) for value in joint_ranges(design)]
                 error: float | None = float(np.abs(ranges - wanted).max())
             except AssemblyError:

@@ -46,7 +46,7 @@ from fes_mj.riding.solver import (
     STATE,
     WORK,
 )
-from fes_mj.statics.extrapolation import require_motion
+from fes_mj.statics.extrapolation import turning_in_range
 
 _BISECTIONS = 40  # of the energy: what is left of the interval is rounding
 MOST_ROWS = 2**21  # an hour of fast riding; beyond it something is wrong
@@ -90,7 +90,7 @@ def ride(ride: Ride, compiled: bool = False) -> Trace:
     linkage that does not turn and for joints that never enter the moments' range, MissingPartError without numba.
     """
     for leg in TWO_LEGS:
-        require_motion(ride.design, ride.moments.of_leg(leg.prefix).measured_on)
+        turning_in_range(ride.design, ride.moments.of_leg(leg.prefix).measured_on)
     table, constants = leg_table(ride.design, ride.moments, ride.lag), solver.constants(ride)
     advance = solver.compiled() if compiled else solver.interpreted()
     columns: Any = table if compiled else solver.as_floats(table)

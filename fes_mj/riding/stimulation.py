@@ -18,10 +18,10 @@ import numpy as np
 from fes_mj.common.arrays import FloatArray
 from fes_mj.common.units import RPM
 from fes_mj.linkage import kinematics
-from fes_mj.linkage.assembly import degrees_from_top, require_assembly, top_dead_centre
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.joints import PerJoint
 from fes_mj.linkage.legs import TWO_LEGS, Leg
+from fes_mj.linkage.turning import turning
 
 
 class Muscle(NamedTuple):
@@ -94,9 +94,9 @@ class Window:
             "core_deg": _degrees(self.core),
             "core_width_deg": math.degrees(self.core_width),
             "stimulate_deg": _degrees(whole),
-            "stimulate_from_tdc_deg": degrees_from_top(design, whole).tolist(),
+            "stimulate_from_tdc_deg": turning(design).degrees_from_top(whole).tolist(),
             "stimulate_core_deg": _degrees(core),
-            "stimulate_core_from_tdc_deg": degrees_from_top(design, core).tolist(),
+            "stimulate_core_from_tdc_deg": turning(design).degrees_from_top(core).tolist(),
             "joint_swing_deg": math.degrees(self.swing),
             "both_joints_deg": None if self.both_joints is None else math.degrees(self.both_joints),
         }
@@ -108,7 +108,7 @@ def stimulation(design: Design, cadences: Sequence[float], lag: float = 0.0) -> 
     Windows that hold less than LEAST_SHARE of the muscle's swing are left out. lag: s, from a change of the stimulation
     to the muscle's answer. Raises AssemblyError for a linkage that does not close.
     """
-    require_assembly(design)
+    turning(design)
     angle = np.linspace(0, 2 * np.pi, POINTS, endpoint=False)
     rate = kinematics.solve(design, angle).joint_rate
     windows = []
@@ -157,7 +157,7 @@ def summary(design: Design, windows: Sequence[Window]) -> dict[str, Any]:
     return {
         "design": design.name,
         "crank_angle_zero": ZERO,
-        "top_dead_centre_deg": math.degrees(top_dead_centre(design)),
+        "top_dead_centre_deg": math.degrees(turning(design).top_dead_centre),
         "core_share": CORE,
         "windows": [window.record(design) for window in windows],
     }

@@ -19,7 +19,7 @@ from fes_mj.simulation.mjcf import build_mjcf
 from fes_mj.simulation.sensors import Sensors
 from fes_mj.simulation.stepping import PRE_ROLL, LoopMaker, Run, feedback_loop, run_loop
 from fes_mj.simulation.time_step import steps_per_turn
-from fes_mj.statics.extrapolation import require_motion
+from fes_mj.statics.extrapolation import turning_in_range
 
 
 @dataclass(frozen=True)
@@ -129,7 +129,7 @@ def simulate(
     """
     cadence, torque = cadence or design.linkage.cadence, torque or torque_map(moments)
     for leg in LEGS[legs]:
-        require_motion(design, torque.of(leg.prefix).reference)
+        turning_in_range(design, torque.of(leg.prefix).reference)
     spec = build_mjcf(
         design,
         cadence=cadence,

@@ -11,9 +11,9 @@ import numpy as np
 
 from fes_mj.common.writing import csv_text
 from fes_mj.linkage import kinematics
-from fes_mj.linkage.assembly import FROM_TOP, degrees_from_top
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.legs import LEGS
+from fes_mj.linkage.turning import FROM_TOP, turning
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.torque_map import torque_map
 from fes_mj.simulation.appearance import FIELD_OF_VIEW, Spec, framing, lowest_point
@@ -100,7 +100,7 @@ def sidecar_text(design: Design, moments: JointMoments, cadence: float | None = 
     """
     cadence, torque = cadence or design.linkage.cadence, torque_map(moments)
     angle = np.linspace(0, 2 * np.pi, SIDECAR_ROWS, endpoint=False)
-    columns = {"crank_angle_deg": np.degrees(angle), FROM_TOP: degrees_from_top(design, angle)}
+    columns = {"crank_angle_deg": np.degrees(angle), FROM_TOP: turning(design).degrees_from_top(angle)}
     massive, massless = np.zeros((2, SIDECAR_ROWS))
     for leg in LEGS[legs]:
         motion, own = kinematics.solve(design, angle - leg.lag), torque.of(leg.prefix)

@@ -14,11 +14,11 @@ import numpy as np
 from fes_mj.common.errors import InputError
 from fes_mj.common.units import RPM
 from fes_mj.linkage import kinematics
-from fes_mj.linkage.assembly import require_assembly
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.kinematics import Motion
 from fes_mj.linkage.legs import LEGS, Leg
 from fes_mj.linkage.segments import GRAVITY, Inertia, combine, inertias
+from fes_mj.linkage.turning import turning
 from fes_mj.simulation import appearance
 from fes_mj.simulation.appearance import Spec
 from fes_mj.simulation.time_step import loose_steps, steps_per_turn
@@ -71,7 +71,7 @@ def build_mjcf(
     drawn: with geoms, which are pictures only and cost a fifth of a step.
     Raises AssemblyError if the linkage does not close, InputError if MuJoCo refuses it.
     """
-    require_assembly(design)
+    turning(design)
     cadence, held = design.linkage.cadence if cadence is None else cadence, driven and held
     spec = mujoco.MjSpec()
     spec.modelname = design.name

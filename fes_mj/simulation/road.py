@@ -16,7 +16,7 @@ from fes_mj.simulation.road_control import road_loop
 from fes_mj.simulation.road_mjcf import DRIVETRAIN, ROAD, TIMESTEP, build_road_mjcf, start_state
 from fes_mj.simulation.sensors import Sensors
 from fes_mj.simulation.stepping import PRE_ROLL, Loop, Run, run_loop
-from fes_mj.statics.extrapolation import require_motion
+from fes_mj.statics.extrapolation import turning_in_range
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,7 +78,7 @@ def ride_on_road(ride: Ride, timestep: float = TIMESTEP, make_loop: Callable[[Ri
     Raises InputError as reduced.ride, UnstableError if the integration breaks down.
     """
     for leg in TWO_LEGS:
-        require_motion(ride.design, ride.moments.of_leg(leg.prefix).measured_on)
+        turning_in_range(ride.design, ride.moments.of_leg(leg.prefix).measured_on)
     model = build_road_mjcf(ride, timestep, drawn=False).compile()
     loop = (make_loop or road_loop)(ride)
     _start_half_a_step_early(model, ride)

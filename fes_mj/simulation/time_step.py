@@ -9,11 +9,11 @@ from fes_mj.common.checks import LEAST_POWER, definitions
 from fes_mj.common.errors import InputError
 from fes_mj.common.units import RPM
 from fes_mj.linkage import kinematics
-from fes_mj.linkage.assembly import require_assembly
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.inertia import crank_inertia
 from fes_mj.linkage.legs import LEGS
 from fes_mj.linkage.segments import GRAVITY
+from fes_mj.linkage.turning import turning
 from fes_mj.simulation.step_error import Errors, predicted_errors
 
 # A predicted error may take up this share of its limit. The other half is for the joint moments, which the prediction
@@ -62,7 +62,7 @@ def steps_per_turn(design: Design, cadence: float, timestep: float | None = None
 @lru_cache(maxsize=256)
 def _needed_steps(design: Design, cadence: float) -> float:
     """The rule; infinite where a link does not close in the scheme, or double precision does not bear so many steps."""
-    require_assembly(design)
+    turning(design)
     errors, limits = predicted_errors(design, cadence, TRIAL), definitions()
     allowed = Errors(*(SHARE * limits[name].limit for name in Errors._fields))
     allowed = allowed._replace(mean_power=LEAST_POWER * allowed.mean_power)

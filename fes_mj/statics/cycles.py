@@ -16,11 +16,12 @@ from scipy.sparse import csr_array
 
 from fes_mj.common.arrays import BoolArray, FloatArray, IntArray
 from fes_mj.common.errors import InputError
-from fes_mj.linkage.assembly import SCAN, obstacles, span_limits
+from fes_mj.linkage.assembly import SCAN
 from fes_mj.linkage.batch import batch_size, take
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.joints import PerJoint
 from fes_mj.linkage.kinematics import joint_angles, positions
+from fes_mj.linkage.turning import BatchTurning, batch_turning, leg_reach
 from fes_mj.moments.fourier import fourier
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.reference_tricycle import ReferenceTricycle
@@ -108,17 +109,14 @@ def uncertain_table(moments: JointMoments) -> WorkTable:
 class Cycles:
     """One turn of each design; NaN for those that do not turn.
 
-    turns: shape (designs,). obstacles: why one does not, see geometry.obstacles. reach: shape (designs,), m, what the
-    leg has left before it is stretched or folded flat; negative if it lacks.
+    turning: which of them turn, and why the others do not.
     low, high, travel: by joint, shape (designs,), rad: smallest and largest angle, and the way made in a turn.
     reversals: by joint, shape (designs,), how often it turns round. work: shape (designs, sets), J a turn and leg.
     outside_sd: shape (designs,), J, of the work, by not knowing the moments beyond their range
     (extrapolation.extrapolation). angles: of the joints in blocks of designs, rad, shape (designs, points) each.
     """
 
-    turns: BoolArray
-    obstacles: dict[str, BoolArray]
-    reach: FloatArray
+    turning: BatchTurning
     low: PerJoint[FloatArray]
     high: PerJoint[FloatArray]
     travel: PerJoint[FloatArray]
@@ -127,6 +125,11 @@ class Cycles:
     outside_sd: FloatArray
     angles: list[PerJoint[FloatArray]]
     reference: ReferenceTricycle
+
+    @property
+    def turns(self) -> BoolArray:
+        """Which of the designs turn, shape (designs,)."""
+        return self.turning.turns
 
     @cached_property
     def outside(self) -> tuple[FloatArray, PerJoint[BoolArray]]:
@@ -151,8 +154,8 @@ def cycles(design: Design, table: WorkTable, points: int = TURN_POINTS) -> Cycle
         _turn(take(design, slice(start, start + size)), crank_angle) for start in range(0, batch_size(design), size)
     ]
     reach, swing = (np.concatenate([part[i] for part in parts]) for i in (0, 1))
-    hindered = obstacles(design, reach, swing)
-    turns = ~np.logical_or.reduce([*hindered.values()])
+    turning = batch_turning(design, reach, swing)
+    turns = turning.turns
     first_rows, work = size * np.arange(len(parts)), np.zeros((len(reach), table.sets))
     work[~turns] = np.nan
     reference, variance = table.measured_on, np.zeros(len(reach))
@@ -179,7 +182,7 @@ def cycles(design: Design, table: WorkTable, points: int = TURN_POINTS) -> Cycle
     low, high, travel, count = (PerJoint(*each) for each in zip(*PerJoint.of(of_joint), strict=True))
     outside_sd = np.where(turns, np.sqrt(variance), np.nan)
     angles = [part[2] for part in parts]
-    return Cycles(turns, hindered, reach, low, high, travel, count, work, outside_sd, angles, reference)
+    return Cycles(turning, low, high, travel, count, work, outside_sd, angles, reference)
 
 
 def joint_speeds(design: Design, table: WorkTable) -> PerJoint[float]:
@@ -197,10 +200,7 @@ def _turn(
 ) -> tuple[FloatArray, FloatArray, PerJoint[FloatArray], PerJoint[Reversals]]:
     """Reach of the leg, swing of the thigh, angles and reversals of knee and hip of one block."""
     points = positions(design, crank_angle)
-    pedal = np.atleast_2d(np.abs(points["pedal"]))
-    shortest, longest = span_limits(design, ("thigh", "shank"))
-    reach = np.minimum(longest - pedal.max(axis=1), pedal.min(axis=1) - shortest)
-    reach = np.broadcast_to(reach, batch_size(design))  # where seat, mass or gear ratio are all that varies
+    reach = leg_reach(design, points["pedal"])
     closes = (reach > 0)[:, None]
     angles = joint_angles(design, points).map(lambda angle: np.where(closes, angle, 0.0))  # or it stays at rest
     return reach, np.ptp(angles.hip, axis=1), angles, angles.map(reversals)

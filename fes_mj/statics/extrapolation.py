@@ -3,16 +3,17 @@
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
 from fes_mj.common.arrays import BoolArray, FloatArray
 from fes_mj.common.errors import AssemblyError, InputError
-from fes_mj.linkage.assembly import SCAN, require_assembly
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.joints import JOINTS, PerJoint
-from fes_mj.linkage.kinematics import Motion, joint_angles, positions
+from fes_mj.linkage.kinematics import Motion
+from fes_mj.linkage.turning import Turning, turning
 from fes_mj.moments.reference_tricycle import ReferenceTricycle
 from fes_mj.moments.torque_map import TorqueMap
 
@@ -124,55 +125,58 @@ def drift_area(excess: FloatArray, half_range: float) -> FloatArray:
     return np.asarray(part**2 / (2 * half_range) + np.maximum(excess - half_range, 0))
 
 
-def require_motion(design: Design, reference: ReferenceTricycle) -> None:
-    """Raise InputError, with the likely cause, unless the linkage turns and each joint enters the moments' range.
+def turning_in_range(design: Design, reference: ReferenceTricycle) -> Turning:
+    """The turning of a design each of whose joints enters the range of moments measured on `reference`.
 
-    Raises AssemblyError, which is one, for a linkage that does not turn.
+    Raises InputError, with the likely cause, unless it does, and AssemblyError, which is one, unless it turns.
     """
     try:
-        require_assembly(design)
+        turn = turning(design)
     except AssemblyError as error:
         raise AssemblyError(f"{error}{_likely_cause(design, reference)}") from None
-    never = []
-    angles = _angles(design)
+    never = _joints_without_data(turn, reference)
+    if never:
+        raise InputError(
+            f"{design.name}: {'; '.join(never)}: it never comes into that range{_likely_cause(design, reference)}"
+        )
+    return turn
+
+
+@lru_cache(maxsize=64)
+def _joints_without_data(turn: Turning, reference: ReferenceTricycle) -> list[str]:
+    """What to say of each joint that never enters the range."""
+    angles = turn.motion.joint_angle
     outside = never_inside(beyond(reference, angles))
+    never = []
     for joint, angle in angles.items():
         if outside[joint]:
             own, known = (
                 f"{low:.1f} to {high:.1f} deg" for low, high in (_ends(angle), np.degrees(reference.ranges[joint]))
             )
             never.append(f"the {joint} moves from {own}, the moments are known from {known}")
-    if never:
-        raise InputError(
-            f"{design.name}: {'; '.join(never)}: it never comes into that range{_likely_cause(design, reference)}"
-        )
+    return never
 
 
 def _ends(angle: FloatArray) -> tuple[float, float]:
     return float(np.degrees(angle.min())), float(np.degrees(angle.max()))
 
 
-def _angles(design: Design) -> PerJoint[FloatArray]:
-    return joint_angles(design, positions(design, SCAN))
-
-
 def _likely_cause(design: Design, reference: ReferenceTricycle) -> str:
     """What a sketch in other axes has wrong: the change after which the joints lie best within the moments' range."""
-    found = []
+    likely = []
     for cause, changes in _causes(design):
-        other = replace(design, linkage=replace(design.linkage, **changes))
         with suppress(AssemblyError):
-            require_assembly(other)
-            found.append((_worst(other, reference), cause))
-    worst, cause = min(found, key=lambda each: each[0], default=(1.0, ""))
+            turn = turning(replace(design, linkage=replace(design.linkage, **changes)))
+            likely.append((_worst(turn, reference), cause))
+    worst, cause = min(likely, key=lambda pair: pair[0], default=(1.0, ""))
     return f". Likely cause: {cause}" if worst < 1 else ""
 
 
-def _worst(design: Design, reference: ReferenceTricycle) -> float:
+def _worst(turn: Turning, reference: ReferenceTricycle) -> float:
     """Largest excess of a joint beyond the moments' range, in half ranges."""
     return max(
         float(np.abs(reference.excess(joint, angle)).max()) / reference.half_range(joint)
-        for joint, angle in _angles(design).items()
+        for joint, angle in turn.motion.joint_angle.items()
     )
 
 

@@ -12,16 +12,16 @@ from fes_mj.common.arrays import ComplexArray, FloatArray
 from fes_mj.common.errors import InputError
 from fes_mj.common.units import RPM
 from fes_mj.linkage import kinematics
-from fes_mj.linkage.assembly import CRANK_ZERO, top_dead_centre
 from fes_mj.linkage.design import BODIES, Design
 from fes_mj.linkage.joints import PerJoint
 from fes_mj.linkage.kinematics import Motion
 from fes_mj.linkage.loads import Load
+from fes_mj.linkage.turning import CRANK_ZERO, turning
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.torque_map import TorqueMap, torque_map
 from fes_mj.moments.uncertainty import power_weights, standard_deviation
 from fes_mj.statics.characteristics import motion_characteristics, power_characteristics
-from fes_mj.statics.extrapolation import NO_MORE, Extrapolation, extrapolation, require_motion
+from fes_mj.statics.extrapolation import NO_MORE, Extrapolation, extrapolation, turning_in_range
 
 # Trapezium rule over a turn; against 36,000 points the mean power changes by less than 1e-5 of itself.
 TURN_POINTS = 3600
@@ -140,7 +140,7 @@ class QuasiStatic:
             "notes": self.notes,
             "warnings": [each._asdict() for each in self.moments.misreadings],
             "crank_angle_zero": CRANK_ZERO,
-            "top_dead_centre_deg": float(np.degrees(top_dead_centre(self.design))),
+            "top_dead_centre_deg": float(np.degrees(turning(self.design).top_dead_centre)),
         }
 
 
@@ -152,7 +152,7 @@ def quasi_static(
     cadence: crank speed in rad/s, by default the design's own (Eq. 16). points: crank angles from 0, uniform.
     Raises AssemblyError if the linkage does not close over the whole turn.
     """
-    require_motion(design, moments.measured_on)
+    turning_in_range(design, moments.measured_on)
     motion = kinematics.solve(design, np.linspace(0, 2 * np.pi, points, endpoint=False))
     torque, cadence = torque_map(moments), cadence or design.linkage.cadence
     joint_moment = torque.along(motion, cadence)

@@ -1,6 +1,5 @@
 """What a sweep finds out about each of its points: statics in a batch, and a simulated turn each."""
 
-from collections.abc import Mapping
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -11,6 +10,7 @@ from fes_mj.common.units import RPM
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.joints import JOINTS
 from fes_mj.linkage.kinematics import solve
+from fes_mj.linkage.turning import Obstacle
 from fes_mj.linkage.variables import COMPONENTS, VARIABLES, replaced
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.torque_map import torque_map
@@ -85,7 +85,7 @@ def _static(design: Design, values: Columns, moments: JointMoments, count: int) 
     turn = cycles(batch, WorkTable.of(moments) if certain else uncertain_table(moments))
     rpm = values.get("cadence_rpm", np.ravel(batch.linkage.cadence) / RPM)
     turns_per_s = rpm * RPM / (2 * np.pi)
-    why = _first_reason(_reasons(turn, rpm), count)
+    why = _first_reason(_obstacles(turn, rpm), count)
     work = np.where((why == "")[:, None], turn.work, np.nan)
     power = work * np.reshape(turns_per_s, (-1, 1))
     deviation = np.hypot(np.linalg.norm(power[:, 1:], axis=1), turn.outside_sd * turns_per_s)
@@ -122,18 +122,22 @@ def _characteristics(design: Design, values: Columns, moments: JointMoments, fou
     return result
 
 
-def _reasons(turn: Cycles, rpm: NDArray[Any]) -> Mapping[str, NDArray[np.bool_]]:
-    """Why `fes_mj static` refuses a design: reason -> which."""
-    never = {f"the {joint} never enters the range of the moments": which for joint, which in turn.outside[1].items()}
+def _obstacles(turn: Cycles, rpm: NDArray[Any]) -> list[Obstacle]:
+    """Why `fes_mj static` refuses a design."""
+    never = [
+        Obstacle(f"the {joint} never enters the range of the moments", never_inside)
+        for joint, never_inside in turn.outside[1].items()
+    ]
     low, high = VARIABLES["cadence_rpm"].low, VARIABLES["cadence_rpm"].high
-    return turn.obstacles | never | {f"its cadence is not within {low:g} to {high:g} rpm": (rpm < low) | (rpm > high)}
+    out_of_bounds = Obstacle(f"its cadence is not within {low:g} to {high:g} rpm", (rpm < low) | (rpm > high))
+    return [*turn.turning.obstacles, *never, out_of_bounds]
 
 
-def _first_reason(reasons: Mapping[str, NDArray[np.bool_]], count: int) -> NDArray[np.object_]:
+def _first_reason(obstacles: list[Obstacle], count: int) -> NDArray[np.object_]:
     """The first reason that holds for each of the points, "" where none does, shape (count,)."""
     why = np.full(count, "", object)
-    for reason, which in reversed([*reasons.items()]):
-        why[np.broadcast_to(which, count)] = reason
+    for reason, hindered in reversed(obstacles):
+        why[np.broadcast_to(hindered, count)] = reason
     return why
 
 

@@ -15,8 +15,8 @@ from matplotlib.patches import Patch
 from fes_mj.common.style import FAINT, INK, SERIES, STYLE, literal
 from fes_mj.common.units import RPM
 from fes_mj.common.writing import replacing
-from fes_mj.linkage.assembly import top_dead_centre
 from fes_mj.linkage.design import Design
+from fes_mj.linkage.turning import turning
 from fes_mj.riding.stimulation import CORE, MUSCLES, Window
 from fes_mj.viewing.charts import any_letters
 
@@ -66,7 +66,7 @@ def _rings(axes: Any, design: Design, windows: Sequence[Window]) -> None:
             axes.bar(
                 (start + end) / 2, _WIDTH, width=end - start, bottom=bottom, color=colour, alpha=shade, lw=0, zorder=2
             )
-    top = top_dead_centre(design)
+    top = turning(design).top_dead_centre
     axes.plot([top, top], [0, _INNER + 3 * _RING], color=INK, lw=1, ls=(0, (4, 2)), zorder=3)
     axes.text(top, 0.1, "TDC", ha="center", va="center", fontsize=8, color=INK, backgroundcolor="white", zorder=4)
     axes.set(ylim=(0, _INNER + 3 * _RING), yticks=[], xticks=np.radians(np.arange(0, 360, 45)))

@@ -10,8 +10,8 @@ import pytest
 
 import fes_mj
 from fes_mj.cli.options import crank_speed
-from fes_mj.linkage.assembly import require_assembly
 from fes_mj.linkage.design_file import design_toml
+from fes_mj.linkage.turning import turning
 from fes_mj.optimization.optimize import optimize
 from fes_mj.optimization.problem import LENGTH_COUNT, Problem
 from fes_mj.statics.cycles import joint_speeds
@@ -69,7 +69,7 @@ def test_verdicts_agree_with_one_design_at_a_time(name: str) -> None:
     unable = [c.name for c in problem.constraints].index("grashof")
     for row in np.flatnonzero(evaluation.margins[:, unable] < 0)[:5]:
         with pytest.raises(fes_mj.AssemblyError):
-            require_assembly(problem.design(evaluation.x[row], "one"))
+            turning(problem.design(evaluation.x[row], "one"))
 
 
 @pytest.mark.parametrize(

@@ -11,8 +11,9 @@ import pytest
 
 import fes_mj
 from fes_mj.common.units import RPM
-from fes_mj.linkage.assembly import joint_ranges, top_dead_centre
+from fes_mj.linkage.assembly import joint_ranges
 from fes_mj.linkage.kinematics import solve
+from fes_mj.linkage.turning import turning
 from fes_mj.riding.stimulation import CORE, LEAST_SHARE, MUSCLES, Window, stimulation, summary, table_csv
 
 
@@ -26,7 +27,7 @@ def test_the_knee_of_a_four_bar_extends_from_its_nearest_to_its_farthest_pedal()
     (quadriceps,), (hamstrings,) = (of(stimulation(trt, [6.0]), muscle) for muscle in ("quadriceps", "hamstrings"))
     inwards = float(np.angle(-trt.linkage.crank_centre)) % (2 * math.pi)
     assert quadriceps.works == pytest.approx((inwards, inwards + math.pi), abs=1e-6)
-    assert quadriceps.works[0] == pytest.approx(top_dead_centre(trt), abs=1e-6)
+    assert quadriceps.works[0] == pytest.approx(turning(trt).top_dead_centre, abs=1e-6)
     assert hamstrings.works[0] == pytest.approx(quadriceps.works[1], abs=1e-6)
     assert hamstrings.width == pytest.approx(math.pi, abs=1e-6)
 
@@ -77,7 +78,7 @@ def test_the_lag_turns_every_window_back_by_what_the_crank_turns_in_it() -> None
         turned = (np.array(found["works_deg"]) - found["stimulate_deg"]) % 360
         assert turned == pytest.approx(0.1 * found["cadence_rpm"] * 6)  # a rpm is 6 deg/s
         assert found["lead_deg"] == pytest.approx(360 * 0.1 * found["cadence_Hz"])
-        top = math.degrees(top_dead_centre(d1))
+        top = math.degrees(turning(d1).top_dead_centre)
         for name in ("stimulate", "stimulate_core"):
             zeros = (np.array(found[f"{name}_deg"]) - found[f"{name}_from_tdc_deg"] - top) % 360
             assert np.minimum(zeros, 360 - zeros) == pytest.approx(0, abs=1e-9)

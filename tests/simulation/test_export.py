@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 
 from fes_mj import load_design, load_moments
 from fes_mj.common.checks import definitions
-from fes_mj.linkage.assembly import FROM_TOP
 from fes_mj.linkage.design_file import DESIGNS
 from fes_mj.linkage.joints import JOINTS
+from fes_mj.linkage.turning import FROM_TOP
 from fes_mj.moments.torque_map import torque_map
 from fes_mj.simulation.bench import joint_drives, simulate
 from fes_mj.simulation.export import mjcf_text, scene_text, sidecar_text

@@ -8,7 +8,7 @@ import pytest
 import fes_mj
 from fes_mj.common.errors import AssemblyError, InputError
 from fes_mj.linkage import kinematics
-from fes_mj.linkage.assembly import require_assembly
+from fes_mj.linkage.turning import turning
 from fes_mj.linkage.variables import component, lengths, replaced, with_lengths
 from fes_mj.statics.cycles import WorkTable, cycles, joint_speeds, reversals, take, uncertain_table
 from fes_mj.statics.turn import QuasiStatic, quasi_static
@@ -60,7 +60,7 @@ def test_any_single_variable_makes_a_batch(name: str, count: int) -> None:
         alone = cycles(replaced(design, {name: float(values[row])}), table)
         assert together.work[row] == pytest.approx(alone.work[0], rel=1e-12)
         assert together.outside[0][row] == pytest.approx(alone.outside[0][0])
-    assert together.turns.shape == together.reach.shape == together.outside_sd.shape == (count,)
+    assert together.turns.shape == together.turning.reach.shape == together.outside_sd.shape == (count,)
 
 
 def solved(design: fes_mj.Design, moments: fes_mj.JointMoments) -> QuasiStatic | InputError:
@@ -80,19 +80,19 @@ def test_random_designs_in_a_batch_fare_as_alone(name: str, moments: fes_mj.Join
     together, fates = cycles(replaced(design, values), uncertain_table(moments)), set()
     for row in range(count):
         alone = replaced(design, {key: float(column[row, 0]) for key, column in values.items()})
-        hindered = [reason for reason, which in together.obstacles.items() if which[row]]
+        reasons = [obstacle.reason for obstacle in together.turning.obstacles if obstacle.hindered[row]]
         outside = [joint for joint, which in together.outside[1].items() if which[row]]
-        assert bool(hindered) != together.turns[row]
+        assert bool(reasons) != together.turns[row]
         found = solved(alone, moments)
         if isinstance(found, AssemblyError):
-            assert f"{design.name}: {hindered[0].partition(' through')[0]}" in str(found)
+            assert f"{design.name}: {reasons[0].partition(' through')[0]}" in str(found)
             fates.add("cannot turn")
         elif isinstance(found, InputError):
             assert all(f"the {joint} moves from" in str(found) for joint in outside)
             assert outside
             fates.add("never inside")
         else:
-            assert not hindered + outside
+            assert not reasons + outside
             per_work = found.cadence / (2 * np.pi)
             power, *deviations = together.work[row] * per_work
             assert power == pytest.approx(found.power_mean, rel=2e-4, abs=2e-3)
@@ -130,17 +130,17 @@ def test_travel_is_the_integral_of_the_absolute_rate(design: fes_mj.Design, mome
 def test_a_batch_is_its_designs_one_by_one(name: str, moments: fes_mj.JointMoments) -> None:
     batch, table = varied(fes_mj.load_design(name), 200), WorkTable.of(moments)
     together = cycles(batch, table)
-    turning = together.reach > 0
-    assert 0 < turning.sum() < 200
-    for row in np.flatnonzero(turning)[:20]:
+    reaching = together.turning.reach > 0
+    assert 0 < reaching.sum() < 200
+    for row in np.flatnonzero(reaching)[:20]:
         alone = cycles(single(batch, int(row)), table)
         assert together.work[row, 0] == pytest.approx(alone.work[0, 0], rel=1e-12)
         assert together.low.hip[row] == pytest.approx(alone.low.hip[0], rel=1e-12)
-    for row in np.flatnonzero(~turning)[:20]:
+    for row in np.flatnonzero(~reaching)[:20]:
         assert np.isnan(together.work[row]).all()
         assert np.isnan(together.travel.knee[row])
         with pytest.raises(fes_mj.AssemblyError):
-            require_assembly(single(batch, int(row)))
+            turning(single(batch, int(row)))
 
 
 def test_sets_of_moments_side_by_side_are_the_sets_alone() -> None:

@@ -13,7 +13,7 @@ from fes_mj.linkage.joints import JOINTS
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.moments.torque_map import torque_map
-from fes_mj.statics.extrapolation import NO_MORE, require_motion
+from fes_mj.statics.extrapolation import NO_MORE, turning_in_range
 from tests.linkages import designs, periodic_moments
 
 
@@ -51,14 +51,14 @@ def test_a_wrong_sign_of_r1_is_recognised_before_anything_runs(name: str) -> Non
 
 @given(designs())
 def test_a_hip_that_never_enters_the_range_is_refused_and_one_that_does_is_not(design: Design) -> None:
-    require_motion(design, PAPER_TRICYCLE)
+    turning_in_range(design, PAPER_TRICYCLE)
     high = PAPER_TRICYCLE.ranges.hip[1]
     angle = fes_mj.quasi_static(design, fes_mj.load_moments(), points=360).joint_angle.hip
     beyond = replace(
         design, linkage=replace(design.linkage, seat_angle=design.linkage.seat_angle + angle.min() - high - 0.01)
     )
     with pytest.raises(InputError, match="the hip moves from"):
-        require_motion(beyond, PAPER_TRICYCLE)
+        turning_in_range(beyond, PAPER_TRICYCLE)
 
 
 @given(designs(), periodic_moments())

@@ -9,8 +9,9 @@ import fes_mj
 from fes_mj.common.checks import LEAST_POWER, definitions
 from fes_mj.common.errors import AssemblyError, InputError
 from fes_mj.crosscheck.turn_case import Case
-from fes_mj.linkage.assembly import LARGEST_SWING, LEAST_CLEARANCE
+from fes_mj.linkage.assembly import LEAST_CLEARANCE
 from fes_mj.linkage.design import Design, Linkage, Rider
+from fes_mj.linkage.turning import LARGEST_SWING
 from fes_mj.moments.joint_moments import JointMoments
 from tests.reference import POINTS, mean_power, turn
 from tools.random_linkages import random_design, random_moments
