@@ -34,19 +34,19 @@ format: $(VENV)/.ready
 
 benchmark: $(VENV)/.ready
 	$(BIN)/pip install --quiet -c constraints.txt -e '.[benchmark]'
-	$(BIN)/python -m tools.benchmark
-	$(BIN)/python -m tools.benchmark_start
-	$(BIN)/python -m tools.benchmark_exudyn
-	$(BIN)/python -m tools.benchmark_optimization
-	$(BIN)/python -m tools.benchmark_ride
-	$(BIN)/python -m tools.benchmark_video
+	$(BIN)/python -m benchmarks.core
+	$(BIN)/python -m benchmarks.start
+	$(BIN)/python -m benchmarks.exudyn
+	$(BIN)/python -m benchmarks.optimization
+	$(BIN)/python -m benchmarks.ride
+	$(BIN)/python -m benchmarks.video
 
 # Every check on every design, refined, with all faults injected: results/verification.md; every ride by both solvers:
 # results/ride_verification.md; what each setting of the simulation is worth: results/settings.md
 verification: $(VENV)/.ready
 	$(BIN)/python tools/update_verification.py
-	$(BIN)/python -m tools.verify_ride
-	$(BIN)/python -m tools.measure_settings
+	$(BIN)/python -m studies.ride_verification
+	$(BIN)/python -m studies.settings
 
 # What the package ships as data: the identified designs and the recovered moments.
 catalogue: $(VENV)/.ready
@@ -66,8 +66,8 @@ pictures: $(VENV)/.ready reproduce
 	$(BIN)/python tools/make_models.py --pictures
 	$(BIN)/python -m tools.picture_demo
 	$(BIN)/python -m tools.picture_explore
-	$(BIN)/python -m tools.power_and_ripple --picture
-	$(BIN)/python -m tools.ride_baseline
+	$(BIN)/python -m studies.ripple --picture
+	$(BIN)/python -m studies.ride_env
 
 # Install the other readers of the models, each into an environment of its own, and compare them with MuJoCo.
 readers: $(VENV)/.ready

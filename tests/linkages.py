@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from fes_mj.linkage.design import ARCHITECTURES, Design
 from fes_mj.moments.joint_moments import JointMoments
-from tools.random_linkages import random_design, random_moments
+from studies.random_linkages import random_design, random_moments
 
 MARGIN = 0.02  # m, that every dyad stays away from its dead centres
 

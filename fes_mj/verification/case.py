@@ -12,7 +12,7 @@ from fes_mj.verification.energy import Audit, audit
 from fes_mj.verification.references import Curves, differences, exact_curves
 from fes_mj.verification.refinement import Refinement, refine
 
-RIDE_DURATION = 5.0  # s: some eight turns; tools/verify_ride.py rides a minute
+RIDE_DURATION = 5.0  # s: some eight turns; studies/ride_verification.py rides a minute
 # Of Case.summary, what a table of runs shows.
 _ROW = (
     *("design", "group", "cadence_rpm", "timestep_s", "power_mean_W", "static_power_mean_W", "relative_difference"),

@@ -12,7 +12,7 @@ from fes_mj.common.units import RPM
 from fes_mj.crosscheck.turn_case import Case
 from fes_mj.linkage.assembly import clearances
 from fes_mj.simulation.time_step import FEWEST_STEPS, LOOSE_STEPS, MOST_STEPS, loose_steps, steps_per_turn
-from tools.random_linkages import random_design
+from studies.random_linkages import random_design
 
 
 def test_the_step_follows_the_sharpness_of_the_motion() -> None:

@@ -19,7 +19,7 @@ from fes_mj.moments.drive import POINTS, drive
 from fes_mj.moments.torque_map import torque_map
 from fes_mj.simulation.variants import VARIANTS, variant_model, variant_options
 from fes_mj.statics.turn import quasi_static
-from tools.measure_energy import ENERGY_LIMIT, GAP_LIMIT, LOOSE, lossless, move_freely
+from studies.energy import ENERGY_LIMIT, GAP_LIMIT, LOOSE, lossless, move_freely
 
 DISCRETE, EULER, FAST, RK4 = (
     getattr(mujoco.mjtIntegrator, f"mjINT_{name}") for name in ("DISCRETE", "EULER", "IMPLICITFAST", "RK4")

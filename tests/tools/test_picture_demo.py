@@ -12,8 +12,8 @@ MADE = {
     "docs/images/explore.png": "tools.picture_explore",
     "mjcf/*/*.png": "tools/make_models.py --pictures",
     "results/figures/*.png": "reproduce",
-    "results/ride-environment.png": "tools.ride_baseline",
-    "results/optimization/ripple.png": "tools.power_and_ripple --picture",
+    "results/ride-environment.png": "studies.ride_env",
+    "results/optimization/ripple.png": "studies.ripple --picture",
 }
 
 

@@ -13,8 +13,8 @@ from fes_mj.linkage.assembly import LEAST_CLEARANCE
 from fes_mj.linkage.design import Design, Linkage, Rider
 from fes_mj.linkage.turning import LARGEST_SWING
 from fes_mj.moments.joint_moments import JointMoments
+from studies.random_linkages import random_design, random_moments
 from tests.reference import POINTS, mean_power, turn
-from tools.random_linkages import random_design, random_moments
 
 LIMIT = definitions()["mean_power"].limit
 

@@ -13,7 +13,7 @@ from fes_mj.cli.app import run
 from fes_mj.common.checks import definitions
 from fes_mj.common.units import RPM
 from fes_mj.simulation.time_step import steps_per_turn
-from tools.verify_time_step import CADENCES
+from studies.time_step import CADENCES
 
 RESULTS = Path(__file__).parents[2] / "results"
 MACHINE = re.compile(r' *"(command|python)": ')

@@ -8,6 +8,7 @@ from pathlib import Path
 import mujoco
 import numpy as np
 
+from benchmarks import core
 from fes_mj.common.console import print_table
 from fes_mj.common.provenance import provenance
 from fes_mj.common.writing import json_text, write_text
@@ -19,7 +20,6 @@ from fes_mj.riding.ride import Ride
 from fes_mj.simulation.road import ride_on_road
 from fes_mj.simulation.road_control import compiled_road_loop
 from fes_mj.simulation.road_mjcf import TIMESTEP, build_road_mjcf
-from tools import benchmark
 
 DURATION = 60.0  # s of riding
 DESIGNS = ("trt", "d1")
@@ -38,7 +38,7 @@ def rates(name: str) -> dict[str, np.ndarray]:
         for _ in range(steps):
             step(model, data)
 
-    measured = benchmark.rates(
+    measured = core.rates(
         {
             f"{name}: reduced": (1, lambda: reduced.ride(ride, compiled=True)),
             f"{name}: MuJoCo, everything recorded": (1, lambda: ride_on_road(ride, make_loop=compiled_road_loop)),

@@ -18,6 +18,7 @@ import numpy as np
 from mujoco import rollout
 from scipy.optimize import fsolve
 
+from benchmarks.core import pylinkage_six_bar, rates
 from fes_mj.common.console import print_table
 from fes_mj.common.provenance import provenance
 from fes_mj.common.writing import json_text, write_text
@@ -37,7 +38,6 @@ from fes_mj.simulation.compiled import compiled_loop
 from fes_mj.simulation.mjcf import build_mjcf
 from fes_mj.simulation.time_step import steps_per_turn
 from fes_mj.statics.cycles import TURN_POINTS, WorkTable, cycles, joint_speeds
-from tools.benchmark import pylinkage_six_bar, rates
 
 DESIGNS, TURNS, THREADS = 2000, 16, 2
 MOMENTS = load_moments("p1p2")

@@ -1,6 +1,6 @@
 """Let exported models whose crank nothing holds move freely; write what becomes of their energy: results/energy.*.
 
-    python -m tools.measure_energy
+    python -m studies.energy
 
 Undriven, without friction, drag and brake, from their keyframes.
 """
@@ -134,7 +134,7 @@ COLUMNS = {
 }
 HEADING = f"""# Energy of the exported models that move freely
 
-Written by `python -m tools.measure_energy`. Each model moves for {DURATION:g} s from its keyframe with idle motors, its
+Written by `python -m studies.energy`. Each model moves for {DURATION:g} s from its keyframe with idle motors, its
 friction, drag and brake taken away. *Drift* is the largest change of its energy per start energy, which is counted
 from the lowest pose; limits: {100 * ENERGY_LIMIT:g} % and {1e6 * GAP_LIMIT:g} um.
 

@@ -6,7 +6,7 @@ import pytest
 
 import fes_mj
 from fes_mj.crosscheck.turn_case import Case
-from tools.measure_settings import NO_MOMENTS, per_first_order, plain_loop
+from studies.settings import NO_MOMENTS, per_first_order, plain_loop
 
 PAGE = Path(__file__).parents[2] / "results" / "settings.md"
 

@@ -1,6 +1,6 @@
 """Write results/stimulation.md: the windows of the five designs, and how wide they are beside those in use.
 
-python -m tools.tabulate_stimulation
+python -m studies.stimulation
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ def main() -> None:
 
 HEADING = f"""# Stimulation windows
 
-Written by `python -m tools.tabulate_stimulation`. Right leg, no lag; angles in deg from the crank arm pointing
+Written by `python -m studies.stimulation`. Right leg, no lag; angles in deg from the crank arm pointing
 backwards. *Core*: the part of a window in which the joint moves at least {CORE:g} times as fast per crank angle as at
 best there. Windows with less than {100 * LEAST_SHARE:g} % of the joint's swing are left out. *Both*: in how much of the
 hamstrings' window the hip extends as well.

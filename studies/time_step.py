@@ -1,6 +1,6 @@
 """Does the rule of simulation.time_step hold? Every cross-check at the number of steps it chooses, over many linkages.
 
-    python -m tools.verify_time_step [--random 200] [--seed 1] [--out results/time_step.md]
+    python -m studies.time_step [--random 200] [--seed 1] [--out results/time_step.md]
 
 The paper's and the optimised designs at seven cadences with the moments of group p1p2 and with random ones, the former
 at 1 and 2 rpm as well, and random linkages 0.15 to 30 mm from their dead centres, at two cadences each.
@@ -28,7 +28,7 @@ from fes_mj.linkage.design import Design
 from fes_mj.linkage.design_file import DESIGNS
 from fes_mj.simulation.step_error import predicted_errors
 from fes_mj.simulation.time_step import SHARE, TRIAL, steps_per_turn
-from tools.random_linkages import random_design, random_moments
+from studies.random_linkages import random_design, random_moments
 
 ROOT = Path(__file__).parents[1]
 CADENCES, SLOW = (10, 30, 60, 93, 120, 160, 200), (1, 2)  # rpm
@@ -134,7 +134,7 @@ def main() -> None:
     groups: dict[str, list[Outcome]] = {}
     for outcome in outcomes:
         groups.setdefault(outcome.trial.group, []).append(outcome)
-    head = "# Does the chosen time step hold?\n\nWritten by `python -m tools.verify_time_step`; see docs/theory.md.\n"
+    head = "# Does the chosen time step hold?\n\nWritten by `python -m studies.time_step`; see docs/theory.md.\n"
     write_text(arguments.out, "\n".join([head, checks_table(groups).markdown(), steps_table(groups).markdown()]))
 
 

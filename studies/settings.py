@@ -1,6 +1,6 @@
 """What each setting of the simulation is worth, and what a mean over the turn: the numbers of docs/theory.md.
 
-    python -m tools.measure_settings [--out results/settings.md]
+    python -m studies.settings [--out results/settings.md]
 
 Every design of the paper with the moments of group p1p2, one setting changed at a time.
 """
@@ -142,7 +142,7 @@ def main() -> None:
         "its error per the e1 of docs/theory.md is by least squares and without joint moments."
     )
     table = Table("One setting changed at a time", columns, [tuple(row.values()) for row in rows], note)
-    origin = "Written by `python -m tools.measure_settings`; see docs/theory.md."
+    origin = "Written by `python -m studies.settings`; see docs/theory.md."
     write_text(arguments.out, f"# What each setting of the simulation is worth\n\n{origin}\n\n{table.markdown()}")
 
 

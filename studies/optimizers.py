@@ -186,7 +186,7 @@ def write(rows: list[Row], won: dict[str, dict[float, Winner]], bounds: dict[str
     """Table, numbers and design files of what is there so far."""
     for found in won.values():
         for winner in found.values():
-            text = design_toml(winner.design, "Found by tools/compare_optimizers.py.")
+            text = design_toml(winner.design, "Found by studies/optimizers.py.")
             write_text(FOLDER / f"{winner.design.name}.toml", text)
     write_text(FOLDER / "comparison.md", markdown(rows, won, bounds))
     content = {

@@ -105,7 +105,7 @@ def rows(target: str) -> list[Row]:
         task = problem(target, statistic)
         best = optimize(task, "cma-es", searches=SEARCHES, budget=BUDGET, seed=2, workers=WORKERS)
         design = task.design(best[0].x, f"{target}-{statistic}")
-        write_text(FOLDER / f"{design.name}.toml", design_toml(design, "Found by tools/optimize_for_people.py."))
+        write_text(FOLDER / f"{design.name}.toml", design_toml(design, "Found by studies/people.py."))
         found.append(row(f"people, {words}", design, printed))
         found[-1].content["power_within_speeds_W"] = [result.merit for result in best]
         print(found[-1].content, flush=True)
@@ -119,7 +119,7 @@ def markdown(found: dict[str, list[Row]]) -> str:
     dimensions = {"design": "", **dict.fromkeys(names, ".3f")}
     parts = [
         "# Designs for people instead of for one rider",
-        "Written by `python -m tools.optimize_for_people`; versions and inputs: people.json. A search of the kind is "
+        "Written by `python -m studies.people`; versions and inputs: people.json. A search of the kind is "
         "`fes_mj optimize crt --riders population --method cma-es`.",
         f"{SAMPLES} men and as many women (ANSUR II, sample seed {SAMPLE_SEED}), moments of p1p2; power of one leg at "
         "the crank, W. Seat moved: to where `fes_mj fit` finds it for him or her; who cannot ride counts as no power. "

@@ -1,6 +1,6 @@
 """Do the two solvers of `fes_mj ride` agree? The paper's designs, both groups, both transmissions, flat and uphill.
 
-    python -m tools.verify_ride [--duration 60] [--out results/ride_verification.md]
+    python -m studies.ride_verification [--duration 60] [--out results/ride_verification.md]
 
 On the flat with Hill's relation; uphill speed-free, on the slope that the mean power balances at 5.71 km/h.
 """
@@ -106,8 +106,10 @@ def main() -> None:
     parser.add_argument("--out", type=Path, default=ROOT / "results" / "ride_verification.md")
     arguments = parser.parse_args()
     outcomes = [outcome(ride) for ride in track([*rides(arguments.duration)], "rides")]
-    head = "# Do the two solvers of a ride agree?\n\nWritten by `python -m tools.verify_ride`; see docs/theory.md.\n"
-    write_text(arguments.out, "\n".join([head, *(table.markdown() for table in tables(outcomes))]))
+    title = "Do the two solvers of a ride agree?"
+    origin = "Written by `python -m studies.ride_verification`; see docs/theory.md."
+    pages = "\n".join(table.markdown() for table in tables(outcomes))
+    write_text(arguments.out, f"# {title}\n\n{origin}\n\n{pages}")
     if max(outcome.worst for outcome in outcomes) > 1:
         raise SystemExit(1)
 

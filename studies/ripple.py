@@ -27,7 +27,7 @@ from fes_mj.optimization.ripple import RippleLimit
 from fes_mj.optimization.winner import assess
 from fes_mj.riding.reduced import steady_ripple
 from fes_mj.riding.ride import Ride, balancing_slope
-from tools.compare_optimizers import problem
+from studies.optimizers import problem
 
 FOLDER = Path("results/optimization")
 MOMENTS = load_moments("p1p2")
@@ -86,7 +86,7 @@ def found(limit: float | None) -> Design:
     best = optimize(task, "cma-es", searches=SEARCHES, budget=BUDGET, seed=2, workers=WORKERS)[0]
     name = "d1-ripple-free" if limit is None else f"d1-ripple-{100 * limit:g}"
     design = task.design(best.x, name)
-    write_text(FOLDER / f"{name}.toml", design_toml(design, "Found by tools/power_and_ripple.py."))
+    write_text(FOLDER / f"{name}.toml", design_toml(design, "Found by studies/ripple.py."))
     return design
 
 
@@ -95,7 +95,7 @@ def markdown(rows: list[dict[str, Any]]) -> str:
     table = Table("", COLUMNS, [tuple(row.values()) for row in rows])
     parts = [
         "# Power against ripple",
-        "Written by `python -m tools.power_and_ripple`; versions and inputs: ripple.json. A search of the kind is "
+        "Written by `python -m studies.ripple`; versions and inputs: ripple.json. A search of the kind is "
         "`fes_mj optimize cdt --speeds-of d1 --ripple-limit 8 --method cma-es`.",
         "The coupler-driven tricycle with the most mean power of one leg, p1p2, at most D1's joint speeds and gear "
         "ratio, 5 mm of Grashof margin, and a ripple of the crank speed, (largest - smallest) / mean, below a limit: "
