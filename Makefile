@@ -68,6 +68,7 @@ pictures: $(VENV)/.ready reproduce
 	$(BIN)/python -m tools.picture_explore
 	$(BIN)/python -m studies.ripple --picture
 	$(BIN)/python -m studies.ride_env
+	$(BIN)/python -m tools.picture_structure
 
 # Install the other readers of the models, each into an environment of its own, and compare them with MuJoCo.
 readers: $(VENV)/.ready
