@@ -12,7 +12,7 @@ from fes_mj.linkage.segments import inertias
 class CrankInertia(NamedTuple):
     """Over crank angle a, the last axis; of a batch of designs, shape (designs, angles).
 
-    inertia: I = sum of m |dr/da|^2 + J (dtheta/da)^2, kg m^2, the kinetic energy being I w^2 / 2 at a crank speed w.
+    inertia: I = sum of m abs(dr/da)^2 + J (dtheta/da)^2, kg m^2, the kinetic energy being I w^2 / 2 at a crank speed w.
     inertia_rate: dI/da, kg m^2. recoil: X = sum of m dx/da, kg m, what a sliding frame feels. recoil_rate: dX/da, kg m.
     height_rate: sum of m dy/da, kg m; times gravity the weight's moment on the crank.
     """
