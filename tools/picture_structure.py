@@ -42,6 +42,7 @@ def drawing() -> str:
     lines = [
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {FLOOR * len(rows) + GAP}" '
         f'font-family="sans-serif" font-size="12" fill="{INK}">'
+        f"<style>rect {{ fill: none; stroke: {INK} }}</style>"
     ]
     for number, rooms in enumerate(rows):
         top, width = GAP + FLOOR * number, (WIDTH - GAP) / len(rooms) - GAP
@@ -51,7 +52,7 @@ def drawing() -> str:
             words = purpose(room)
             words = words if len(words) <= most else words[: most - 1].rsplit(" ", 1)[0].rstrip(",") + " …"
             lines += [
-                f'<rect x="{left:.0f}" y="{top}" width="{width:.0f}" height="{BOX}" rx="4" fill="none" stroke="{INK}"/>',
+                f'<rect x="{left:.0f}" y="{top}" width="{width:.0f}" height="{BOX}" rx="4"/>',
                 f'<text x="{left + 10:.0f}" y="{top + 17}" font-weight="bold">{room}</text>',
                 f'<text x="{left + 10:.0f}" y="{top + 34}">{escape(words)}</text>',
             ]
