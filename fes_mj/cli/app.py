@@ -23,7 +23,11 @@ LONGEST_MESSAGE = 1000  # characters
 app = App(name="fes_mj", help=PURPOSE, suppress_keyboard_interrupt=False)
 for _command, _help in COMMANDS.items():
     app.command(f"fes_mj.cli.{_command}:{_command}", name=_command, help=_help)
-app.register_install_completion_command(help="Install shell completion: a script that answers without starting fes_mj.")
+app.command(
+    "fes_mj.cli.completion:install_completion",
+    name="--install-completion",
+    help="Install shell completion: a script that answers without starting fes_mj.",
+)
 
 
 def run(arguments: Sequence[str] | None = None) -> int:

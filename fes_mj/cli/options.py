@@ -140,7 +140,7 @@ class RunOptions(PrintOptions, LoadOptions):
     Parameters
     ----------
     verbose
-        Print more: energies and joint forces.
+        Print more: energies, joint forces, the whole error budget.
     """
 
     verbose: Annotated[bool, Parameter(alias="-v", negative="")] = False

@@ -6,7 +6,6 @@ from typing import Annotated, Any
 import numpy as np
 from cyclopts import Parameter
 
-from fes_mj.budget.budget import error_budget, summary
 from fes_mj.cli.options import RunOptions
 from fes_mj.common.console import conclude, print_table, say
 from fes_mj.common.units import RPM
@@ -35,11 +34,16 @@ def static(
     loaded = options.load(design)
     result = quasi_static(*loaded)
     if options.json:
+        from fes_mj.budget.budget import error_budget, summary
+
         content = result.summary() | summary(error_budget(result)) | JointForces(result).summary()
         sys.stdout.write(json_text(content | (_curves(quasi_static(*loaded, points=360)) if curves else {})))
     elif not options.quiet:
         print_table(heading(result), ("", "quasi-static"), rows(result))
-        print_budget(result)
+        if options.verbose:
+            print_budget(result)
+        elif result.power_sd is not None:
+            say("+- is the error of the moments alone; --verbose adds the whole error budget")
         print_table("The turn", ("", "quasi-static"), turn_rows(result.summary()))
         print_forces(JointForces(result))
         if options.verbose:
@@ -114,6 +118,8 @@ def force_rows(forces: dict[str, Any]) -> list[tuple[str, str, str]]:
 
 def print_budget(*legs: QuasiStatic) -> None:
     """Print how sure the mean power is, all in all, if the error of the moments is known."""
+    from fes_mj.budget.budget import error_budget  # draws hundreds of linkages: as long as all else together
+
     budget = error_budget(*legs)
     if budget:
         say(f"error budget of the mean power: {budget.text}")

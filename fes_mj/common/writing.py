@@ -3,8 +3,6 @@
 import json
 import math
 import os
-import secrets
-import shutil
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
@@ -99,7 +97,7 @@ def _named(path: Path) -> Iterator[None]:
 @contextmanager
 def _beside(path: Path) -> Iterator[Path]:
     """An empty temporary file in the folder of `path`, with its suffix; gone afterwards, whenever a signal comes."""
-    temporary = path.with_name(f"{TEMPORARY}{secrets.token_hex(8)}{path.suffix}")
+    temporary = path.with_name(f"{TEMPORARY}{os.urandom(8).hex()}{path.suffix}")
     with _named(path):
         try:
             temporary.touch(exist_ok=False)
@@ -144,6 +142,8 @@ def write_files(contents: Mapping[Path, str | bytes]) -> None:
             with _named(path):
                 new[path].write_bytes(content.encode() if isinstance(content, str) else content)
                 if path in old:
+                    import shutil
+
                     shutil.copy2(path, old[path])
         try:
             for path, temporary in new.items():

@@ -87,7 +87,7 @@ class Population:
         shank = part * self.shank.middle + _number("boot", "malleolus_to_pedal")
         return Rider(part * self.thigh.middle, shank, part**2 * self.mass.middle, self.sex)
 
-    def sample(self, size: int, random: np.random.Generator) -> Legs:
+    def sample(self, size: int, random: "np.random.Generator") -> Legs:
         """So many people, with thigh, shank and mass as correlated as measured."""
         correlation = np.full((3, 3), _number("mass", "correlation"))
         correlation[0, 1] = correlation[1, 0] = self.correlation

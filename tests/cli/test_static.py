@@ -67,12 +67,15 @@ def test_the_error_budget(capsys: pytest.CaptureFixture[str], tmp_path: Path) ->
     assert content["draws_that_do_not_turn"] < 0.02 * content["draws"]
     assert content == json.loads(result(capsys, "static", "d1", "--json")[1])
     said = f"{content['power_mean_drawn_W']:.1f} +- {content['power_sd_total_W']:.1f} W with every unknown drawn"
-    assert f"error budget of the mean power: {said}" in result(capsys, "static", "d1")[1].replace("\n", " ")
+    assert f"error budget of the mean power: {said}" in result(capsys, "static", "d1", "-v")[1].replace("\n", " ")
+    brief = result(capsys, "static", "d1")[1]
+    assert "drawn" not in brief
+    assert "+- is the error of the moments alone" in brief
     own = tmp_path / "own.csv"
     own.write_text("crank_angle_deg,knee_Nm,hip_Nm\n0,10,0\n90,20,0\n180,0,5\n270,-10,0\n")
     content = json.loads(result(capsys, "static", str(written(tmp_path)), "--moments", str(own), "--json")[1])
     assert (content["power_sd_total_W"], content["power_sd_by"]) == (None, None)
-    assert "error budget" not in result(capsys, "static", "d1", "--moments", str(own))[1]
+    assert "error budget" not in result(capsys, "static", "d1", "-v", "--moments", str(own))[1]
     content = json.loads(result(capsys, "static", str(written(tmp_path)), "--json")[1])
     assert content["power_sd_total_W"] > content["power_sd_W"]
 
