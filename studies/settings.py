@@ -22,6 +22,7 @@ from fes_mj.common.console import track
 from fes_mj.common.markdown import Table
 from fes_mj.common.units import RPM
 from fes_mj.common.writing import write_text
+from fes_mj.crosscheck.pipeline import Pipeline
 from fes_mj.crosscheck.turn_case import Case
 from fes_mj.linkage.design import BODIES, Design
 from fes_mj.linkage.design_file import DESIGNS
@@ -50,10 +51,10 @@ def measured(name: str) -> dict[str, Any]:
     step = case.cadence * case.simulation.timestep
     rms, predicted = case.rms_per_leg(case.simulation), predicted_errors(design, case.cadence, step).inverse_dynamics
     with patch.object(stepping, "LOOP_SOFTNESS", 1.0):
-        soft, default = case.run(), _DefaultLoops(design, moments).run()
+        soft, default = case.steps.run(), _DefaultLoops(design, moments).run()
     with patch.object(mjcf, "SERVO_GAIN", 1e6):
-        weak, slow = case.run(), Case(design, moments, SLOW * RPM).simulation
-    slower, stiff = (case.run(timestep=FINE, loop_solref=(constant, 1.0)) for constant in (1e-5, 1e-7))
+        weak, slow = case.steps.run(), Case(design, moments, SLOW * RPM).simulation
+    slower, stiff = (case.steps.run(timestep=FINE, loop_solref=(constant, 1.0)) for constant in (1e-5, 1e-7))
     idle = Case(design, NO_MOMENTS)
     mean = quasi_static(design, moments).power_mean
     return {
@@ -66,13 +67,13 @@ def measured(name: str) -> dict[str, Any]:
         "MuJoCo's softness: rms, W @.3f": case.rms_per_leg(soft),
         "servo of 1e6: rms, W @.4f": case.rms_per_leg(weak),
         "its ripple at 1 rpm @.1e": slow.cadence_ripple,
-        "plain mj_step: rms, W @.4f": case.rms_per_leg(case.run(make_loop=plain_loop)),
-        "its error per e1 @.2f": per_first_order(idle, idle.run(make_loop=plain_loop)),
+        "plain mj_step: rms, W @.4f": case.rms_per_leg(case.steps.run(make_loop=plain_loop)),
+        "its error per e1 @.2f": per_first_order(idle, idle.steps.run(make_loop=plain_loop)),
         "static mean against 36,000 angles @.0e": abs(mean / quasi_static(design, moments, points=MANY).power_mean - 1),
     }
 
 
-class _DefaultLoops(Case):
+class _DefaultLoops(Pipeline):
     """With what MuJoCo takes for a constraint that says nothing."""
 
     def edit_model(self, spec: Any) -> None:
@@ -102,7 +103,7 @@ def plain_loop(torque: TorqueMap, drives: dict[str, str]) -> Loop:
 
 def per_first_order(case: Case, run: Simulation) -> float:
     """Error of the crank power per the e1 of docs/theory.md, by least squares."""
-    motion = case.motion(run.crank_angle)
+    motion = case.steps.motion(run.crank_angle)
     expected = first_order_error(motion, case.cadence, run.timestep)
     found = run.power - case.reference_power(run)
     return float(np.einsum("a,a->", found, expected) / np.einsum("a,a->", expected, expected))

@@ -98,7 +98,9 @@ def simulate(
 
 def _content(case: Case) -> str:
     """The result as JSON text."""
-    return json_text(case.summary() | summary(error_budget(*case.statics)))
+    from fes_mj.crosscheck.turn_output import turn_summary
+
+    return json_text(turn_summary(case) | summary(error_budget(*case.statics)))
 
 
 def _check(timestep: float | None, turns: int) -> None:
@@ -140,6 +142,8 @@ def conclude_checks(who: str, checks: Sequence[Check], agreeing: str = "") -> No
 
 
 def _print(case: Case, verbose: bool) -> None:
+    from fes_mj.crosscheck.turn_output import turn_summary
+
     run = case.simulation
     dynamic = (
         with_error(run.power_mean, case.power_sd),  # the mean is the same functional of the moments
@@ -155,7 +159,7 @@ def _print(case: Case, verbose: bool) -> None:
         [*zip(names, *columns, dynamic, strict=True)],
     )
     print_budget(*case.statics)
-    quasi, measured = (turn_rows(each) for each in (case.static.summary(), case.summary()))
+    quasi, measured = (turn_rows(each) for each in (case.static.summary(), turn_summary(case)))
     turn = [(name, value, other) for (name, value), (_, other) in zip(quasi, measured, strict=True)]
     together = "dynamic" if len(run.legs) == 1 else "dynamic, both legs"
     print_table("The turn", ("", f"quasi-static{sides[0]}", together), turn)
@@ -183,8 +187,9 @@ def _results(case: Case, folder: Path, inputs: Sequence[Path]) -> list[Path]:
 
 
 def _write(case: Case, result: Path, cycle: Path, model: Path) -> None:
+    from fes_mj.crosscheck.turn_output import cycle_csv
     from fes_mj.simulation.export import mjcf_text
     from fes_mj.simulation.mjcf import build_mjcf
 
     spec = build_mjcf(case.design, cadence=case.cadence, timestep=case.simulation.timestep, legs=case.legs)
-    write_files({result: _content(case), cycle: case.cycle_csv(), model: mjcf_text(spec)})
+    write_files({result: _content(case), cycle: cycle_csv(case), model: mjcf_text(spec)})

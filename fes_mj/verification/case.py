@@ -7,13 +7,14 @@ from typing import Any, NamedTuple
 
 from fes_mj.crosscheck.ride_case import RideCase
 from fes_mj.crosscheck.turn_case import Case
+from fes_mj.crosscheck.turn_output import turn_summary
 from fes_mj.riding.ride import TRANSMISSIONS, Ride
 from fes_mj.verification.energy import Audit, audit
 from fes_mj.verification.references import Curves, differences, exact_curves
 from fes_mj.verification.refinement import Refinement, refine
 
 RIDE_DURATION = 5.0  # s: some eight turns; studies/ride_verification.py rides a minute
-# Of Case.summary, what a table of runs shows.
+# Of turn_summary, what a table of runs shows.
 _ROW = (
     *("design", "group", "cadence_rpm", "timestep_s", "power_mean_W", "static_power_mean_W", "relative_difference"),
     *("work_per_turn_J", "loop_gap_max_m"),
@@ -75,7 +76,7 @@ class VerificationCase(Case):
 
     def row(self) -> dict[str, Any]:
         """The case as the row of a table of runs."""
-        return {key: value for key, value in self.summary().items() if key in _ROW} | {
+        return {key: value for key, value in turn_summary(self).items() if key in _ROW} | {
             "numerical_uncertainty_W": self.uncertainty
         }
 

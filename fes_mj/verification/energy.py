@@ -49,9 +49,9 @@ class Audit(Energy):
 
 def audit(case: Case) -> Audit:
     """Run one turn of a case as `simulate` does, and record the forces of every kind."""
-    model, steps = case.spec().compile(), steps_per_turn(case.design, case.cadence, case.timestep)
+    model, steps = case.steps.spec().compile(), steps_per_turn(case.design, case.cadence, case.timestep)
     drives = joint_drives(ONE_LEG)
-    feedback = {name: case.torque.of(name).feedback(joint) for name, joint in drives.items()}
+    feedback = {name: case.steps.torque.of(name).feedback(joint) for name, joint in drives.items()}
     forces = ("ctrl", "qfrc_constraint", "qfrc_passive", "actuator_force")
     run = run_loop(model, recording_loop(feedback, forces, every=1), steps)
     rows = Sensors(model, run.sensors)

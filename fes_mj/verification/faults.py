@@ -1,12 +1,12 @@
 """Realistic mistakes, each put into the pipeline of a case on its own, and the checks that notice it.
 
-The steps of the pipeline are methods of crosscheck.Case. A fault replaces one of them in a subclass, or edits the
-design; nothing else is touched, so nothing has to be put back.
+The steps are methods of crosscheck.pipeline.Pipeline. A fault replaces one of them in a subclass, or edits the design;
+nothing else is touched, so nothing has to be put back.
 """
 
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from dataclasses import fields
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 from fes_mj.common.checks import Check, definitions
@@ -36,11 +36,8 @@ class Fault(NamedTuple):
 
     def put_into(self, case: VerificationCase) -> VerificationCase:
         """The case with the mistake in it; nothing measured of the original is taken over."""
-        values = {field.name: getattr(case, field.name) for field in fields(case)}
-        if self.edit:
-            values["design"] = self.edit(case.design)
-        faulty: type[VerificationCase] = type("FaultyCase", (type(case),), dict(self.steps))
-        return faulty(**values)
+        design = self.edit(case.design) if self.edit else case.design
+        return replace(case, design=design, pipeline=type("FaultyPipeline", (case.pipeline,), dict(self.steps)))
 
 
 class Detection(NamedTuple):

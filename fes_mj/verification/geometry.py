@@ -18,7 +18,7 @@ POINTS = 2048
 
 def geometry_checks(case: Case) -> list[Check]:
     """Closure, branch and rates of one case."""
-    motion = case.motion(np.linspace(0, 2 * np.pi, POINTS, endpoint=False))
+    motion = case.steps.motion(np.linspace(0, 2 * np.pi, POINTS, endpoint=False))
     first, second = rate_errors(motion)
     return [
         case.check("loop_closure", closure_error(motion)),

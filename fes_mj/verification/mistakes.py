@@ -14,7 +14,7 @@ import numpy as np
 
 from fes_mj.common.arrays import FloatArray
 from fes_mj.common.reading import DATA, read_toml
-from fes_mj.crosscheck.turn_case import Case
+from fes_mj.crosscheck.pipeline import Pipeline
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.joints import PerJoint
 from fes_mj.linkage.kinematics import Jet, Motion, Rotation
@@ -42,12 +42,12 @@ def without_length(motion: Motion, body: str, point: str) -> Any:
     return arm.real / abs(arm) + 1j * arm.imag if (body, point) == ("thigh", "knee") else arm
 
 
-def by_crank_angle(case: Case, motion: Motion, leg: str = "") -> PerJoint[FloatArray]:
-    return case.moments.at(motion.crank_angle - case.moments.measured_on.top_dead_centre)
+def by_crank_angle(steps: Pipeline, motion: Motion, leg: str = "") -> PerJoint[FloatArray]:
+    return steps.moments.at(motion.crank_angle - steps.moments.measured_on.top_dead_centre)
 
 
 def in_motion(change: Callable[[Motion], Motion]) -> Steps:
-    return {"motion": lambda case, crank_angle: change(Case.motion(case, crank_angle))}
+    return {"motion": lambda steps, crank_angle: change(Pipeline.motion(steps, crank_angle))}
 
 
 def knee_below(motion: Motion) -> Motion:
@@ -74,7 +74,7 @@ def without_centripetal(motion: Motion) -> Motion:
 
 
 def in_map(kind: type[TorqueMap]) -> Steps:
-    return {"torque": cached_property(lambda case: kind(case.moments))}
+    return {"torque": cached_property(lambda steps: kind(steps.moments))}
 
 
 class DirectionsExchanged(TorqueMap):
@@ -128,7 +128,7 @@ def in_model(kind: str, name: str = "", **changes: Any) -> Steps:
     changes: a new value, or a function of the old one. The kind "option" and "compiler" are elements themselves.
     """
 
-    def edit(_: Case, spec: Any) -> None:
+    def edit(_: Pipeline, spec: Any) -> None:
         found = getattr(spec, kind)
         for element in found if hasattr(found, "__len__") else [found]:
             for attribute, new in changes.items() if name in ("", getattr(element, "name", "")) else ():
@@ -143,7 +143,7 @@ def times(*factors: float) -> Callable[[FloatArray], FloatArray]:
 
 
 def in_keyframe(field: str, joint: str, change: Callable[[float], float]) -> Steps:
-    def edit(_: Case, spec: Any) -> None:
+    def edit(_: Pipeline, spec: Any) -> None:
         place = [each.name for each in spec.joints].index(joint)  # hinges only: one coordinate each
         values = getattr(spec.keys[0], field)
         values[place] = change(values[place])
@@ -151,21 +151,21 @@ def in_keyframe(field: str, joint: str, change: Callable[[float], float]) -> Ste
     return {"edit_model": edit}
 
 
-def late_torque(case: Case, **options: Any) -> Any:
-    run = Case.run(case, **options)
+def late_torque(steps: Pipeline, **options: Any) -> Any:
+    run = Pipeline.run(steps, **options)
     return replace(run, crank_moment=np.roll(run.crank_moment, 1))
 
 
-def half_a_turn_more(case: Case, **options: Any) -> Any:
-    return replace(Case.run(case, turns=1.5, **options), turns=1)
+def half_a_turn_more(steps: Pipeline, **options: Any) -> Any:
+    return replace(Pipeline.run(steps, turns=1.5, **options), turns=1)
 
 
-def without_pre_roll(case: Case, **options: Any) -> Any:
-    return Case.run(case, pre_roll=1, **options)
+def without_pre_roll(steps: Pipeline, **options: Any) -> Any:
+    return Pipeline.run(steps, pre_roll=1, **options)
 
 
-def without_couples(case: Case, *arguments: Any, **options: Any) -> Any:
-    loads = Case.loads(case, *arguments, **options)
+def without_couples(steps: Pipeline, *arguments: Any, **options: Any) -> Any:
+    loads = Pipeline.loads(steps, *arguments, **options)
     return {body: load._replace(couple=0 * load.couple) for body, load in loads.items()}
 
 

@@ -23,10 +23,10 @@ FIELDS = (
 
 def map_checks(case: Case) -> list[Check]:
     """The torque map on the tricycle it was made from, and its two implementations against each other."""
-    motion, spread = case.motion(np.linspace(0, 2 * np.pi, 360, endpoint=False)), 0.0
+    motion, spread = case.steps.motion(np.linspace(0, 2 * np.pi, 360, endpoint=False)), 0.0
     for joint in JOINTS:
         angle, rate = motion.joint_angle[joint], case.cadence * motion.joint_rate[joint]
-        scalar, array = case.torque.feedback(joint), case.torque.moment(joint, angle, rate)
+        scalar, array = case.steps.torque.feedback(joint), case.steps.torque.moment(joint, angle, rate)
         values = [scalar(*pair) for pair in zip(angle.tolist(), rate.tolist(), strict=True)]
         spread = max(spread, float(np.abs(values - array).max()))
     return [case.check("torque_map", map_error(case)), case.check("map_feedback", spread)]
@@ -36,13 +36,13 @@ def map_error(case: Case) -> float:
     """On its own tricycle the map must give the moments back, at every 0.1 deg of crank angle, N m."""
     after, reference = GRID[:TABLE_SIZE], case.moments.measured_on  # from top dead centre
     motion = kinematics.solve(reference.design, reference.top_dead_centre + after)
-    given, mapped = case.moments.at(after), case.torque.along(motion, reference.cadence)
+    given, mapped = case.moments.at(after), case.steps.torque.along(motion, reference.cadence)
     return max(float(np.abs(mapped[joint] - given[joint]).max()) for joint in JOINTS)
 
 
 def model_checks(case: Case) -> list[Check]:
     """The compiled model at its keyframe, and the file written of it."""
-    model = case.spec().compile()
+    model = case.steps.spec().compile()
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, 0)
     mujoco.mj_forward(model, data)
@@ -66,7 +66,7 @@ def tilt(data: mujoco.MjData) -> float:
 
 def file_difference(case: Case) -> float:
     """Largest difference of any number between the model and the one read back from its own file."""
-    model, again = case.spec().compile(), mujoco.MjModel.from_xml_string(mjcf_text(case.spec()))
+    model, again = case.steps.spec().compile(), mujoco.MjModel.from_xml_string(mjcf_text(case.steps.spec()))
     pairs = [(getattr(model, field), getattr(again, field)) for field in FIELDS]
     pairs.append(
         (np.array([model.opt.timestep, *model.opt.gravity]), np.array([again.opt.timestep, *again.opt.gravity]))

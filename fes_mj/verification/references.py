@@ -27,17 +27,17 @@ def exact_curves(case: Case, crank_angle: FloatArray | None = None) -> dict[str,
     crank_angle: rad, shape (angles,), by default every degree.
     """
     angle = np.linspace(0, 2 * np.pi, POINTS, endpoint=False) if crank_angle is None else crank_angle
-    motion = case.motion(angle)
-    joint_moment, loads = case.joint_moment(motion), case.loads(motion)
+    motion = case.steps.motion(angle)
+    joint_moment, loads = case.steps.joint_moment(motion), case.steps.loads(motion)
     return {
         "massless": {
-            "equilibrium": case.equilibrium(motion, joint_moment)[0],
+            "equilibrium": case.steps.equilibrium(motion, joint_moment)[0],
             "virtual work": virtual_work(motion, joint_moment),
-            "inverse dynamics": case.crank_moment(motion, mass_scale=0.0),
+            "inverse dynamics": case.steps.crank_moment(motion, mass_scale=0.0),
         },
         "massive": {
-            "equilibrium": case.equilibrium(motion, joint_moment, loads)[0],
-            "inverse dynamics": case.crank_moment(motion),
+            "equilibrium": case.steps.equilibrium(motion, joint_moment, loads)[0],
+            "inverse dynamics": case.steps.crank_moment(motion),
             "mj_inverse": mujoco_inverse(case, motion, joint_moment),
         },
     }
@@ -49,7 +49,7 @@ def mujoco_inverse(case: Case, motion: Motion, joint_moment: PerJoint[FloatArray
     The loops are switched off and the exact constant-speed motion is put in; the forces it needs, less the joint
     motors, are projected on the closed linkage's one degree of freedom. Constraint softness has no part in it.
     """
-    model = case.spec().compile()
+    model = case.steps.spec().compile()
     model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_EQUALITY | mujoco.mjtDisableBit.mjDSBL_ACTUATION)
     ones = np.ones(np.size(motion.crank_angle))
     joints = joint_motion(motion) | {"crank": (motion.crank_angle * ones, ones, 0 * ones)}

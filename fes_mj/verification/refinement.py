@@ -102,7 +102,7 @@ def observed_order(sizes: list[float], errors: list[float]) -> float:
 def refine(case: Case) -> Refinement:
     """Run a case at every level; the first is the case's own run."""
     count = steps_per_turn(case.design, case.cadence, case.timestep)
-    exact = case.static_at(EXACT_POINTS).work_per_turn
+    exact = case.steps.quasi_static(EXACT_POINTS).work_per_turn
     scale = case.power_scale * 2 * math.pi / case.cadence  # J
 
     def level(run: Simulation, loop_time: float) -> Level:
@@ -111,7 +111,7 @@ def refine(case: Case) -> Refinement:
 
     def again(factor: int, loop_time: float) -> Level:
         timestep, solref = 2 * math.pi / case.cadence / (factor * count), (loop_time, LOOP_SOLREF[1])
-        return level(case.run(timestep=timestep, loop_solref=solref), loop_time)
+        return level(case.steps.run(timestep=timestep, loop_solref=solref), loop_time)
 
     stiff = LOOP_SOLREF[0]
     steps = (level(case.simulation, stiff), *(again(factor, stiff) for factor in STEP_FACTORS[1:]))
@@ -127,7 +127,7 @@ def _work(case: Case, run: Simulation) -> float:
     taken off, and the energy that masses and weight hold at its end and not at its beginning is added.
     """
     overrun = float(run.crank_speed.sum() * run.timestep) - 2 * math.pi * run.turns
-    motion = case.motion(run.crank_angle[:1])
-    beyond = float(virtual_work(motion, case.joint_moment(motion))[0]) * overrun
+    motion = case.steps.motion(run.crank_angle[:1])
+    beyond = float(virtual_work(motion, case.steps.joint_moment(motion))[0]) * overrun
     energy = run.energy
     return (energy.crank_work + energy.kinetic + energy.potential - beyond) / run.turns

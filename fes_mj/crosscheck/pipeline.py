@@ -1,0 +1,101 @@
+"""The steps from a design under joint moments to a measured turn, each of which a fault can replace."""
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from fes_mj.common.arrays import ComplexArray, FloatArray
+from fes_mj.linkage import kinematics
+from fes_mj.linkage.design import Design
+from fes_mj.linkage.joints import PerJoint
+from fes_mj.linkage.kinematics import Motion
+from fes_mj.linkage.loads import Load, body_loads
+from fes_mj.linkage.segments import GRAVITY
+from fes_mj.moments.joint_moments import JointMoments
+from fes_mj.moments.torque_map import TorqueMap, torque_map
+from fes_mj.simulation.appearance import Spec
+from fes_mj.simulation.bench import Simulation, simulate
+from fes_mj.simulation.mjcf import build_mjcf
+from fes_mj.statics.extrapolation import turning_in_range
+from fes_mj.statics.turn import QuasiStatic, equilibrium, virtual_work
+
+
+@dataclass(frozen=True, eq=False)
+class Setup:
+    """A design under joint moments at a cadence (rad/s, by default Eq. 16), for whole turns of one leg or two.
+
+    timestep: s, by default chosen by time_step.
+    """
+
+    design: Design
+    moments: JointMoments
+    cadence: float = math.nan
+    timestep: float | None = None
+    turns: int = 1
+    legs: int = 1
+
+    def __post_init__(self) -> None:
+        if math.isnan(self.cadence):
+            object.__setattr__(self, "cadence", self.design.linkage.cadence)
+
+
+class Pipeline(Setup):
+    """The steps of a setup. A subclass that replaces one of them is a pipeline with a fault."""
+
+    @cached_property
+    def torque(self) -> TorqueMap:
+        return torque_map(self.moments)
+
+    def motion(self, crank_angle: FloatArray) -> Motion:
+        """Kinematics at crank angles, rad."""
+        return kinematics.solve(self.design, crank_angle)
+
+    def joint_moment(self, motion: Motion, leg: str = "") -> PerJoint[FloatArray]:
+        """Knee and hip moment along a motion of the leg with this name prefix, N m."""
+        return self.torque.of(leg).along(motion, self.cadence)
+
+    def loads(self, motion: Motion, mass_scale: float = 1.0, gravity: float = GRAVITY) -> dict[str, Load]:
+        """Weight and inertia along a motion."""
+        return body_loads(motion, self.cadence, mass_scale, gravity)
+
+    def equilibrium(
+        self, motion: Motion, joint_moment: PerJoint[FloatArray], loads: dict[str, Load] | None = None
+    ) -> tuple[FloatArray, dict[str, ComplexArray]]:
+        """Crank moment and reactions by free-body equilibrium."""
+        return equilibrium(motion, joint_moment, loads)
+
+    def edit_model(self, spec: Spec) -> None:
+        """Change the MuJoCo model before it is compiled; nothing is changed here."""
+
+    def run(self, **options: Any) -> Simulation:
+        """Simulate with these options of bench.simulate instead of the setup's own."""
+        own = {"cadence": self.cadence, "timestep": self.timestep, "turns": self.turns, "legs": self.legs}
+        return simulate(self.design, self.moments, **own | options, torque=self.torque, edit=self.edit_model)
+
+    # What several steps give together.
+
+    def spec(self) -> Spec:
+        """The MuJoCo model of one leg, not drawn."""
+        spec = build_mjcf(self.design, cadence=self.cadence, timestep=self.timestep, drawn=False)
+        self.edit_model(spec)
+        return spec
+
+    def quasi_static(self, points: int, leg: str = "") -> QuasiStatic:
+        """The quasi-static turn of the leg with this name prefix, over so many crank angles.
+
+        Raises AssemblyError if the linkage does not close.
+        """
+        torque = self.torque.of(leg)
+        turning_in_range(self.design, torque.reference)
+        motion = self.motion(np.linspace(0, 2 * np.pi, points, endpoint=False))
+        joint_moment = self.joint_moment(motion, leg)
+        return QuasiStatic(motion, torque, self.cadence, joint_moment, *self.equilibrium(motion, joint_moment))
+
+    def crank_moment(
+        self, motion: Motion, mass_scale: float = 1.0, gravity: float = GRAVITY, leg: str = ""
+    ) -> FloatArray:
+        """Exact crank moment of a leg at constant speed, N m, without MuJoCo (inverse_dynamics.crank_moment)."""
+        return virtual_work(motion, self.joint_moment(motion, leg), self.loads(motion, mass_scale, gravity))
