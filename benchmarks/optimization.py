@@ -29,10 +29,10 @@ from fes_mj.linkage.variables import lengths, with_lengths
 from fes_mj.moments.files import load_moments
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.moments.torque_map import torque_map
+from fes_mj.optimization.evenness import RippleLimit
+from fes_mj.optimization.limits import load_limits
 from fes_mj.optimization.people import sampled
 from fes_mj.optimization.problem import Problem
-from fes_mj.optimization.problem_file import load_limits
-from fes_mj.optimization.ripple import RippleLimit
 from fes_mj.simulation.bench import joint_drives, simulate
 from fes_mj.simulation.compiled import compiled_loop
 from fes_mj.simulation.mjcf import build_mjcf

@@ -16,13 +16,12 @@ from fes_mj.common.writing import json_text, write_text
 from fes_mj.linkage.design_file import design_toml, load_design
 from fes_mj.moments.files import load_moments
 from fes_mj.moments.joint_moments import GROUPS
-from fes_mj.optimization.confidence import gain
-from fes_mj.optimization.optimize import optimize
+from fes_mj.optimization.limits import DEFAULT, load_limits
+from fes_mj.optimization.optimize import run_searches
 from fes_mj.optimization.pareto import pareto_front
 from fes_mj.optimization.problem import Problem
-from fes_mj.optimization.problem_file import DEFAULT, load_limits
 from fes_mj.optimization.search import Result
-from fes_mj.optimization.winner import Winner, assess
+from fes_mj.optimization.winner import Winner, assess, gain
 from fes_mj.statics.cycles import WorkTable, joint_speeds, uncertain_table
 
 FOLDER = Path("results/optimization")
@@ -85,8 +84,8 @@ def compare(target: str) -> list[Row]:
     task = problem(target, manufacturable=False)
     own = task.variables(task.template)
     options: dict[str, Any] = {"searches": SEEDS, "seed": 1, "workers": WORKERS}
-    pursued = optimize(task, "random-pursuit", **options)
-    from_own = optimize(task, "random-pursuit", start=own, **options | {"searches": 2})
+    pursued = run_searches(task, "random-pursuit", **options)
+    from_own = run_searches(task, "random-pursuit", start=own, **options | {"searches": 2})
     median = float(np.median([result.merit for result in pursued]))
     printed = float(task.evaluate(own[None]).power[0, 0])
     rows = [
@@ -96,7 +95,7 @@ def compare(target: str) -> list[Row]:
         summarise(target, f"random pursuit, {BUDGET:,} evaluations", [at_budget(r, BUDGET) for r in pursued], None),
     ]
     for method in ("differential-evolution", "cma-es"):
-        rows += [summarise(target, method, optimize(task, method, budget=BUDGET, **options), median)]
+        rows += [summarise(target, method, run_searches(task, method, budget=BUDGET, **options), median)]
     return rows
 
 
@@ -105,7 +104,7 @@ def winners(target: str) -> dict[float, Winner]:
     found = {}
     for caution in CAUTIONS:
         task = problem(target, manufacturable=True, caution=caution)
-        best = optimize(task, "cma-es", searches=SEARCHES, budget=SEARCH_BUDGET, seed=2, workers=WORKERS)[0]
+        best = run_searches(task, "cma-es", searches=SEARCHES, budget=SEARCH_BUDGET, seed=2, workers=WORKERS)[0]
         name = f"{target}-caution-{caution:.0f}"
         found[caution] = assess(task.design(best.x, name), task.template, load_moments(TARGETS[target]))
     return found
@@ -171,7 +170,7 @@ def unbounded() -> dict[str, str]:
     for ratio in (2.1, 4.0, 8.0, 16.0):
         task = problem("d1", manufacturable=True)
         task = replace(task, limits=replace(task.limits, gear_ratio_max=ratio))
-        best = optimize(task, "cma-es", searches=2, budget=20_000, seed=3, workers=WORKERS)[0]
+        best = run_searches(task, "cma-es", searches=2, budget=20_000, seed=3, workers=WORKERS)[0]
         turn = task.evaluate(best.x[None])
         values = dict(zip((c.name for c in task.constraints), turn.values[0], strict=True))
         own = gain(turn.power[0], np.asarray(task.baseline))

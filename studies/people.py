@@ -20,10 +20,10 @@ from fes_mj.linkage.design_file import design_toml, load_design
 from fes_mj.linkage.joints import PerJoint
 from fes_mj.linkage.variables import COMPONENTS, component
 from fes_mj.moments.files import load_moments
-from fes_mj.optimization.optimize import optimize
+from fes_mj.optimization.limits import DEFAULT, load_limits
+from fes_mj.optimization.optimize import run_searches
 from fes_mj.optimization.people import sampled
 from fes_mj.optimization.problem import Problem
-from fes_mj.optimization.problem_file import DEFAULT, load_limits
 from fes_mj.optimization.winner import Winner, assess
 from fes_mj.statics.cycles import WorkTable, cycles, joint_speeds
 
@@ -103,7 +103,7 @@ def rows(target: str) -> list[Row]:
     found.append(row("the paper's rider", load_design(own), printed))
     for statistic, words in STATISTICS.items():
         task = problem(target, statistic)
-        best = optimize(task, "cma-es", searches=SEARCHES, budget=BUDGET, seed=2, workers=WORKERS)
+        best = run_searches(task, "cma-es", searches=SEARCHES, budget=BUDGET, seed=2, workers=WORKERS)
         design = task.design(best[0].x, f"{target}-{statistic}")
         write_text(FOLDER / f"{design.name}.toml", design_toml(design, "Found by studies/people.py."))
         found.append(row(f"people, {words}", design, printed))

@@ -20,10 +20,10 @@ from fes_mj.crosscheck.ride_case import RideCase
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.design_file import design_toml, load_design
 from fes_mj.moments.files import load_moments
-from fes_mj.optimization.optimize import optimize
+from fes_mj.optimization.evenness import RippleLimit
+from fes_mj.optimization.limits import DEFAULT
+from fes_mj.optimization.optimize import run_searches
 from fes_mj.optimization.problem import Problem
-from fes_mj.optimization.problem_file import DEFAULT
-from fes_mj.optimization.ripple import RippleLimit
 from fes_mj.optimization.winner import assess
 from fes_mj.riding.reduced import steady_ripple
 from fes_mj.riding.ride import Ride, balancing_slope
@@ -83,7 +83,7 @@ def ridden(design: Design, limit: float | None) -> dict[str, Any]:
 def found(limit: float | None) -> Design:
     """The design with the most power within a limit, written as a file."""
     task = even(limit)
-    best = optimize(task, "cma-es", searches=SEARCHES, budget=BUDGET, seed=2, workers=WORKERS)[0]
+    best = run_searches(task, "cma-es", searches=SEARCHES, budget=BUDGET, seed=2, workers=WORKERS)[0]
     name = "d1-ripple-free" if limit is None else f"d1-ripple-{100 * limit:g}"
     design = task.design(best.x, name)
     write_text(FOLDER / f"{name}.toml", design_toml(design, "Found by studies/ripple.py."))

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
-from contextlib import nullcontext
 from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
-import numpy as np
 from cyclopts import Parameter
 
 from fes_mj.cli.process import interruption_code
@@ -20,10 +18,8 @@ from fes_mj.common.writing import json_text, require_replaceable, require_writab
 from fes_mj.linkage.design_file import design_toml, load_design
 
 if TYPE_CHECKING:
-    from fes_mj.linkage.design import Design
     from fes_mj.optimization.findings import Findings
-    from fes_mj.optimization.outcome import Outcome
-    from fes_mj.optimization.problem import Problem
+    from fes_mj.optimization.optimize import Optimum
     from fes_mj.optimization.winner import Winner
 
 _DEFAULTS = SearchOptions()
@@ -57,49 +53,56 @@ def optimize(
     options.check()
     _check_files(out, report, options)
     moments, compared_with = options.load_moments(), load_design(options.speeds_of)
-    problem = options.load_problem(kind, moments)
-    command = options.command(kind, problem) + (f" -o {shell_word(out.name)}" if out else "")
+    command = options.command(kind) + (f" -o {shell_word(out.name)}" if out else "")
     origin = f"Found by fes_mj {version('fes-mj')}:\n{command}"
+    from fes_mj.common.parallel import Workers
     from fes_mj.optimization.findings import Findings
+    from fes_mj.optimization.optimize import optimize as search
     from fes_mj.optimization.winner import assess
 
-    findings = Findings(out, problem, origin, options.recipe(kind, problem)) if out else None
+    findings = Findings(out, origin, options.recipe(kind)) if out else None
     try:
-        outcome = _search(problem, options, findings)
-        design = problem.design(outcome.x, printable(out.stem) if out else f"{kind}-{moments.name}")
+        with progress_bar(f"{options.method}, searches", options.searches, options.silent) as advance:
+            optimum = search(
+                kind,
+                moments,
+                method=options.method,
+                budget=options.budget,
+                searches=options.searches,
+                seed=options.seed,
+                smooth=options.smooth,
+                workers=Workers(options.jobs, options.cluster),
+                findings=findings,
+                progress=advance,
+                **options.problem_options(),
+            )
         # first: what was found stays, whatever becomes of the rest
-        files = _write(design, outcome, origin, findings, options) if findings else {}
-        winner = assess(design, compared_with, moments, options.seed)
+        files = _write(optimum, origin, findings, options) if findings else {}
+        winner = assess(optimum.design, compared_with, moments, options.seed)
         if report:
             from fes_mj.optimization.page import page_html
 
-            write_text(report, page_html(winner, outcome, origin))
+            write_text(report, page_html(winner, optimum, origin))
             files["report"] = str(report)
     except (KeyboardInterrupt, Exception) as error:
         code = interruption_code(error)
-        if code is None or not (findings and findings.best):
+        if code is None or not findings or (power := findings.power) is None:
             raise
-        _print_saved(problem, findings.best[1], findings.so_far)
+        errors.print(
+            f"fes_mj: interrupted; the best so far, {power:.2f} W, is saved in "
+            f"{printable(str(findings.so_far))}; the same command goes on from there",
+            soft_wrap=True,
+        )
         return code
     if findings:
         findings.remove()
     if options.json:
-        sys.stdout.write(json_text(outcome.summary(winner) | {"command": command, "design_file": None, **files}))
+        sys.stdout.write(json_text(winner.summary(optimum) | {"command": command, "design_file": None, **files}))
     elif not options.quiet:
-        _print(winner, outcome)
+        _print(winner, optimum)
         if report:
             say(f"report: {report}")
     return 0 if winner.case.agrees else 1
-
-
-def _print_saved(problem: Problem, x: list[float], path: Path) -> None:
-    """Say what an interrupted search leaves behind."""
-    power = problem.evaluate(np.array([x])).power[0, 0]
-    errors.print(
-        f"fes_mj: interrupted; the best so far, {power:.2f} W, is saved in {printable(str(path))}; "
-        "the same command goes on from there",
-        soft_wrap=True,
-    )
 
 
 def _check_files(out: Path | None, report: Path | None, options: SearchOptions) -> None:
@@ -115,30 +118,6 @@ def _check_files(out: Path | None, report: Path | None, options: SearchOptions) 
         require_page_packages()
 
 
-def _search(problem: Problem, options: SearchOptions, findings: Findings | None) -> Outcome:
-    """The best of several independent searches, or the front."""
-    from fes_mj.common.parallel import Workers
-    from fes_mj.optimization.optimize import optimize as run
-    from fes_mj.optimization.outcome import Outcome, front_outcome
-
-    with findings.searching() if findings else nullcontext():
-        if options.method == "nsga-ii":
-            return front_outcome(problem, options.evaluations, options.seed, options.smooth, findings)
-        with progress_bar(f"{options.method}, searches", options.searches, options.silent) as advance:
-            results = run(
-                problem,
-                options.method,
-                searches=options.searches,
-                budget=options.budget,
-                seed=options.seed,
-                start=problem.variables(problem.template) if options.start else None,
-                workers=Workers(options.jobs, options.cluster),
-                findings=findings,
-                progress=advance,
-            )
-    return Outcome(problem, options.method, results[0].x, sum(result.evaluations for result in results))
-
-
 def _beside(out: Path, options: SearchOptions) -> dict[str, tuple[Path, str]]:
     """What appears beside the design file: key of JSON -> path, and what marks a file there as one of fes_mj's."""
     from fes_mj.optimization.pareto import CSV_MARK
@@ -150,18 +129,19 @@ def _beside(out: Path, options: SearchOptions) -> dict[str, tuple[Path, str]]:
     return files
 
 
-def _write(design: Design, outcome: Outcome, origin: str, findings: Findings, options: SearchOptions) -> dict[str, str]:
+def _write(optimum: Optimum, origin: str, findings: Findings, options: SearchOptions) -> dict[str, str]:
     """Write the design file, then, each once the one before is there, what appears beside it; key of JSON -> file."""
     from fes_mj.simulation.export import mjcf_text
     from fes_mj.simulation.mjcf import build_mjcf
 
+    design = optimum.design
     paths = {"design_file": findings.out, **{key: path for key, (path, _) in _beside(findings.out, options).items()}}
     texts: dict[str, Callable[[], str]] = {
         "design_file": lambda: design_toml(design, origin),
         "model_file": lambda: mjcf_text(build_mjcf(design)),
     }
-    if outcome.front:
-        texts["front_file"] = outcome.front.as_csv
+    if optimum.front:
+        texts["front_file"] = optimum.front.as_csv
     for key, text in texts.items():
         findings.write(text(), paths[key])
         if not options.silent:
@@ -169,17 +149,15 @@ def _write(design: Design, outcome: Outcome, origin: str, findings: Findings, op
     return {key: str(paths[key]) for key in texts}
 
 
-def _print(winner: Winner, outcome: Outcome) -> None:
+def _print(winner: Winner, optimum: Optimum) -> None:
     """Tables of what was found, and notes on what to beware of."""
-    front, design = outcome.front, winner.design
+    front, design, people = optimum.front, winner.design, optimum.problem.people
     title = f"{design.name}: {design.linkage.architecture.title}; {winner.case.moments.name}"
-    print_table(f"{title}; {outcome.method}, {outcome.evaluations:,} evaluations", ("", "value"), winner.rows)
-    print_table("Constraints", ("constraint", "value", "limit", ""), outcome.limit_rows)
-    people = outcome.problem.people
+    print_table(f"{title}; {optimum.method}, {optimum.evaluations:,} evaluations", ("", "value"), winner.rows)
+    print_table("Constraints", ("constraint", "value", "limit", ""), optimum.limit_rows)
     if people.count > 1:
-        rows = [tuple(f"{value:.3f}" for value in rider.values()) for rider in outcome.riders]
-        power = outcome.problem.evaluate(outcome.x[None]).power[0, 0]
-        print_table(f"{people.statistic}: {power:.2f} W; by these riders", _RIDER_COLUMNS, rows)
+        rows = [tuple(f"{value:.3f}" for value in rider.values()) for rider in optimum.riders]
+        print_table(f"{people.statistic}: {optimum.power:.2f} W; by these riders", _RIDER_COLUMNS, rows)
     if front:
         print_table(f"Front, {front.title}", front.columns, front.rows)
     for note in winner.notes:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import os
 import shlex
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import Annotated, Any, Literal
 
 from cyclopts import Parameter
 
@@ -14,10 +14,6 @@ from fes_mj.cli.fit_options import sample_size
 from fes_mj.cli.options import MomentsOptions, PrintOptions
 from fes_mj.common.errors import InputError, require_extra
 from fes_mj.common.provenance import provenance
-from fes_mj.moments.joint_moments import JointMoments
-
-if TYPE_CHECKING:
-    from fes_mj.optimization.problem import Problem
 
 Methods = Literal["differential-evolution", "cma-es", "nsga-ii", "random-pursuit"]
 _PACKAGES = {"cma-es": "cma", "nsga-ii": "pymoo"}
@@ -120,26 +116,22 @@ class SearchOptions(PrintOptions, MomentsOptions):
         if self.caution or self.method == "nsga-ii":
             raise InputError(f"--riders {self.riders} is an objective of its own: not with --caution or nsga-ii")
 
-    def load_problem(self, kind: str, moments: JointMoments) -> Problem:
-        """The problem that the options describe."""
+    def problem_options(self) -> dict[str, Any]:
+        """What they ask of the problem, as make_problem takes it."""
+        from fes_mj.optimization.limits import DEFAULT
         from fes_mj.optimization.people import ONE_RIDER, sampled
-        from fes_mj.optimization.problem import make_problem
-        from fes_mj.optimization.problem_file import DEFAULT
 
-        problem = make_problem(
-            kind,
-            moments,
-            compared_with=self.speeds_of,
-            start=self.start,
-            limits=self.problem or DEFAULT,
-            knee_speed=self.knee_speed_limit,
-            hip_speed=self.hip_speed_limit,
-            caution=self.caution,
-            ripple=None if self.ripple_limit is None else self.ripple_limit / 100,
-        )
-        return replace(
-            problem, people=ONE_RIDER if self.riders == "one" else sampled(self.riders, *self._people.values())
-        )
+        size, seed = sample_size(self.samples), self.sample_seed or 0
+        return {
+            "compared_with": self.speeds_of,
+            "start": self.start,
+            "limits": self.problem or DEFAULT,
+            "knee_speed": self.knee_speed_limit,
+            "hip_speed": self.hip_speed_limit,
+            "caution": self.caution,
+            "ripple": None if self.ripple_limit is None else self.ripple_limit / 100,
+            "people": ONE_RIDER if self.riders == "one" else sampled(self.riders, size, seed),
+        }
 
     @property
     def inputs(self) -> list[Path]:
@@ -147,39 +139,20 @@ class SearchOptions(PrintOptions, MomentsOptions):
         named = (self.start, self.speeds_of, self.problem)
         return [*(Path(name) for name in named if name), *self.moment_files()]
 
-    @property
-    def evaluations(self) -> int:
-        """Of each search."""
-        from fes_mj.optimization.methods import BUDGETS
-
-        return self.budget or BUDGETS[self.method]
-
-    def command(self, kind: str, problem: Problem) -> str:
-        """The command line, for a shell, that finds the same again: what is left out by default is spelled out."""
-        spelled_out = {
-            "group": None if self.moments else self.group or "p1p2",
-            "budget": self.evaluations,
-            **({} if self.riders == "one" else self._people),
-            **{f"{joint}_speed_limit": speed for joint, speed in problem.joint_speed.items()},
-        }
-        words = ["fes_mj", "optimize", kind]
-        for field in fields(self):
-            value = spelled_out.get(field.name, getattr(self, field.name))
-            value = value[0] if isinstance(value, list) else value  # the one file of moments
-            if field.name in _WITHOUT_EFFECT or value is None or value is False:
+    def command(self, kind: str) -> str:
+        """The command line, for a shell, that finds the same again with this version: what is not by default."""
+        words, defaults = ["fes_mj", "optimize", kind], SearchOptions()
+        for name, value in vars(self).items():
+            if name in _WITHOUT_EFFECT or value == getattr(defaults, name):
                 continue
-            option, text = "--" + field.name.replace("_", "-"), str(value)
-            words += [option] if value is True else [f"{option}={text}"] if text[:1] == "-" else [option, text]
+            text = value[0] if isinstance(value, list) else value  # the one file of moments
+            words.append(f"--{name.replace('_', '-')}" + ("" if value is True else f"={text}"))
         return " ".join(map(shell_word, words))
 
-    @property
-    def _people(self) -> dict[str, int]:
-        return {"samples": sample_size(self.samples), "sample_seed": self.sample_seed or 0}
-
-    def recipe(self, kind: str, problem: Problem) -> dict[str, Any]:
+    def recipe(self, kind: str) -> dict[str, Any]:
         """What the outcome depends on beside the problem: the command and the versions of what carries it out."""
         packages = [_PACKAGES[self.method]] if self.method in _PACKAGES else []
-        return provenance(packages=packages) | {"command": self.command(kind, problem)}
+        return provenance(packages=packages) | {"command": self.command(kind)}
 
 
 def shell_word(word: str) -> str:

@@ -1,14 +1,18 @@
 """Where a design leaves the limits of the paper's Eq. 15, as the optimiser counts them."""
 
-from dataclasses import replace
-from functools import cache
 from typing import Any, NamedTuple
 
 from fes_mj.common.text import typeset
 from fes_mj.linkage.design import Design
-from fes_mj.moments.files import load_moments
-from fes_mj.optimization.constraints import Constraint, length_values
-from fes_mj.optimization.problem import LENGTH_COUNT, Problem, make_problem
+from fes_mj.linkage.variables import lengths
+from fes_mj.optimization.limits import (
+    Constraint,
+    Limits,
+    length_constraints,
+    length_values,
+    load_limits,
+    range_constraints,
+)
 from fes_mj.statics.turn import QuasiStatic
 
 
@@ -35,31 +39,28 @@ MARKS = {
 }
 
 
-def broken(design: Design, solved: QuasiStatic | None) -> list[dict[str, Any]]:
-    """The limits that a design leaves: what they colour, and a sentence. solved: any turn of it, if it turns."""
-    problem = replace(_problem(), template=design)
-    values = _lengths(problem, design)
-    if solved:
-        for joint, (low, high) in solved.joint_range_deg.items():
+def broken(design: Design, static: QuasiStatic | None) -> list[dict[str, Any]]:
+    """The limits that a design leaves: what they colour, and a sentence. static: any turn of it, if it turns."""
+    limits = load_limits()
+    values = _lengths(design, limits)
+    if static:
+        for joint, (low, high) in static.joint_range_deg.items():
             values |= {f"{joint}_min": low, f"{joint}_max": high}
     return [
-        {"marks": MARKS[each.name].colours, "text": _sentence(each, values[each.name])}
-        for each in problem.constraints
-        if each.name in MARKS and each.name in values and not each.margin(values[each.name]) >= 0
+        {"marks": MARKS[name].colours, "text": _sentence(constraint, values[name])}
+        for constraint in (*length_constraints(limits), *range_constraints(limits))
+        if (name := constraint.name) in MARKS and name in values and not constraint.margin(values[name]) >= 0
     ]
 
 
-def _lengths(problem: Problem, design: Design) -> dict[str, float]:
+def _lengths(design: Design, limits: Limits) -> dict[str, float]:
     """Values of the limits on lengths by name, m; a TRT has no rocker, and the design space is six-bars'."""
     if design.linkage.kind == "trt":
         return {"crank_length": design.linkage.crank, "ankle_to_pedal": design.linkage.foot}
-    values = length_values(design, problem.variables(design)[None, :LENGTH_COUNT], problem.limits.polygon)[0]
-    return dict(zip((each.name for each in problem.geometry), values.tolist(), strict=True))
-
-
-@cache
-def _problem() -> Problem:
-    return make_problem("cdt", load_moments())  # moments and kind play no part in the limits that are shown
+    values = length_values(design, lengths(design)[None], limits.polygon)[0]
+    return {
+        constraint.name: value for constraint, value in zip(length_constraints(limits), values.tolist(), strict=True)
+    }
 
 
 def _sentence(constraint: Constraint, value: float) -> str:

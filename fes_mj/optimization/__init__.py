@@ -1,1 +1,1 @@
-"""New designs: the optimisation problem, methods to solve it, what a winner is worth, and sweeps over many designs."""
+"""New designs: the optimisation problem, methods to solve it, what a winner is worth."""

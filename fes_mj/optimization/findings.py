@@ -34,17 +34,18 @@ class Findings:
     only by the final one; until then the best is BEST.search/best.toml. Several processes may call `improve` at once.
     """
 
-    def __init__(self, out: Path, problem: Problem, origin: str, recipe: dict[str, Any]) -> None:
+    def __init__(self, out: Path, origin: str, recipe: dict[str, Any]) -> None:
         """origin: comment of the design file. recipe: what the outcome depends on beside the problem, as JSON."""
-        self.out, self.folder = out, out.with_suffix(".search")
-        self._problem, self._origin = problem, origin
-        self._recipe = recipe | {"problem": digest(problem)}
+        self.out, self.folder, self.name = out, out.with_suffix(".search"), printable(out.stem)
+        self._origin, self._recipe = origin, recipe
+        self._problem: Problem | None = None
         self._known = -np.inf  # merit of the best design, as far as this process knows
         self.so_far = out
 
     @contextmanager
-    def searching(self) -> Iterator[None]:
-        """Claim the folder for searches; it is gone afterwards if they found nothing."""
+    def searching(self, problem: Problem) -> Iterator[None]:
+        """Claim the folder for searches of a problem; it is gone afterwards if they found nothing."""
+        self._problem, self._recipe = problem, self._recipe | {"problem": digest(problem)}
         self._claim()
         try:
             yield
@@ -79,8 +80,14 @@ class Findings:
     @property
     def best(self) -> tuple[float, list[float]] | None:
         """Merit and variables of the best design so far; None before there is any."""
-        found = [_read(path, "merit", "x") for path in self.folder.glob("best-*.json")]
-        return max(found, default=None)
+        return max((_read(path, "merit", "x") for path in self.folder.glob("best-*.json")), default=None)
+
+    @property
+    def power(self) -> float | None:
+        """Mean crank power of one leg in the best design so far, W; None before there is any."""
+        if self._problem is None or not (best := self.best):
+            return None
+        return float(self._problem.evaluate(np.array([best[1]])).power[0, 0])
 
     def improve(self, search: int, x: FloatArray, merit: float) -> None:
         """Keep a feasible design, shape (10,), found by a search, if it is the best of all."""
@@ -101,11 +108,11 @@ class Findings:
     def finished(self) -> dict[int, Result]:
         """Results of the finished searches, by their numbers."""
         names = [field.name for field in dataclasses.fields(Result)]
-        found = {}
+        results = {}
         for path in self.folder.glob("search-*.json"):
             x, merit, evaluations, history = _read(path, *names)
-            found[int(path.stem.partition("-")[2])] = Result(np.array(x), merit, evaluations, np.array(history))
-        return found
+            results[int(path.stem.partition("-")[2])] = Result(np.array(x), merit, evaluations, np.array(history))
+        return results
 
     def write(self, text: str, path: Path) -> None:
         """Put a whole file in place by way of the folder: a kill leaves nothing beside the design file."""
@@ -121,7 +128,8 @@ class Findings:
             self.folder.rmdir()
 
     def _publish(self, x: list[float], by: str) -> None:
-        design = self._problem.design(np.array(x), printable(self.out.stem))
+        assert self._problem
+        design = self._problem.design(np.array(x), self.name)
         beside = self.folder / f"best-{by}.toml"
         write_text(beside, design_toml(design, self._origin + _UNFINISHED))
         beside.replace(self.so_far)

@@ -1,35 +1,149 @@
-"""One call for every single-objective method: independent searches over seeds, side by side, the best of them."""
+"""New designs in one call: a problem, a method, independent searches over seeds side by side, the best of them."""
 
+import math
 from collections.abc import Callable
-from contextlib import suppress
-from functools import partial
+from contextlib import nullcontext, suppress
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
+from typing import Any
 
 import numpy as np
 from numpy.random import SeedSequence
 
+from fes_mj.common.arrays import FloatArray
 from fes_mj.common.errors import InputError
 from fes_mj.common.parallel import HERE, Workers, run_tasks
+from fes_mj.linkage.design import Design
+from fes_mj.moments.files import load_moments
+from fes_mj.moments.joint_moments import GROUPS, JointMoments
 from fes_mj.optimization.findings import Findings
-from fes_mj.optimization.methods import BUDGETS, METHODS, Start
-from fes_mj.optimization.problem import Problem
-from fes_mj.optimization.search import BudgetSpentError, Result, Search, require_feasible
+from fes_mj.optimization.pareto import Front, pareto_front
+from fes_mj.optimization.problem import Evaluation, Problem, make_problem
+from fes_mj.optimization.search import BUDGETS, METHODS, BudgetSpentError, Result, Search, Start
+from fes_mj.statics.cycles import WorkTable, cycles
 
 
-def search_once(
-    problem: Problem, method: str, budget: int, start: Start, findings: Findings | None, task: tuple[int, SeedSequence]
-) -> Result | InputError:
-    """One search, by its number and its own random numbers; an error, as a value, if it found nothing feasible."""
-    number, seed = task
-    search = Search(problem, budget, partial(findings.improve, number) if findings else None)
-    with suppress(BudgetSpentError):
-        METHODS[method](search, start, np.random.default_rng(seed))
-    try:
-        return search.result()
-    except InputError as error:
-        return error
+@dataclass(frozen=True)
+class Optimum:
+    """The best design of all searches, or of a front the one with the most power averaged over both groups.
+
+    name: the design's. x: its variables, shape (variables,), see Problem. evaluations: of all searches together.
+    """
+
+    problem: Problem
+    method: str
+    name: str
+    x: FloatArray
+    evaluations: int
+    front: Front | None = None
+
+    @property
+    def design(self) -> Design:
+        """As drawn for the rider of the problem's template."""
+        return self.problem.design(self.x, self.name)
+
+    @property
+    def power(self) -> float:
+        """Mean crank power of one leg, W; for people their statistic."""
+        return float(self._evaluation.power[0, 0])
+
+    @property
+    def feasible(self) -> bool:
+        return bool(self._evaluation.feasible[0])
+
+    @property
+    def violations(self) -> list[dict[str, Any]]:
+        """See Problem.violations."""
+        return self.problem.violations(self._evaluation)
+
+    @property
+    def riders(self) -> list[dict[str, float]]:
+        """Whom the design was made for, the rider of its file first: legs and seat, and the power in it."""
+        designs = self.problem.riders(self.x)
+        ground = designs[0].linkage.ground
+        return [
+            {
+                "thigh": design.rider.thigh,
+                "shank": design.rider.shank,
+                "forward_m": (design.linkage.ground - ground).real,
+                "up_m": (ground - design.linkage.ground).imag,
+                "seat_angle_deg": math.degrees(design.linkage.seat_angle),
+                "power_mean_W": float(cycles(design, self.problem.table).work[0, 0])
+                * design.linkage.cadence
+                / (2 * np.pi),
+            }
+            for design in designs
+        ]
+
+    @property
+    def limit_rows(self) -> list[tuple[str, str, str, str]]:
+        """Constraint, value, limit and whether it is active, as text."""
+        values, margins = self._evaluation.values[0], self._evaluation.margins[0]
+        return [
+            (
+                f"{c.name.replace('_', ' ')}, {c.unit}".rstrip(", "),
+                f"{value:.4g}",
+                f"{'>=' if c.at_least else '<='} {c.limit:.4g}",
+                "active" if abs(margin) < 0.01 * c.scale else "",
+            )
+            for c, value, margin in zip(self.problem.constraints, values, margins, strict=True)
+        ]
+
+    @cached_property
+    def _evaluation(self) -> Evaluation:
+        return self.problem.evaluate(self.x[None])
 
 
 def optimize(
+    kind: str,
+    moments: JointMoments,
+    *,
+    method: str = "differential-evolution",
+    budget: int | None = None,
+    searches: int = 4,
+    seed: int = 0,
+    smooth: bool = False,
+    workers: Workers = HERE,
+    findings: Findings | None = None,
+    progress: Callable[[int], None] = lambda _: None,
+    **problem: Any,
+) -> Optimum:
+    """The six-bar of a kind ("crt", "cdt") with the most mean crank power under joint moments.
+
+    method: one of search.METHODS, of which the best of so many independent searches counts, or "nsga-ii", which makes
+    one and weighs the powers of both rider groups and, if `smooth`, the least fluctuation of energy. budget:
+    evaluations of each search, by default search.BUDGETS. seed: the same one finds the same design, wherever the
+    searches run. findings: where results are kept, and finished ones taken from. progress is told how many more
+    searches are done. problem: limits, start, people: the arguments of make_problem.
+
+    Raises InputError for what make_problem refuses, an infeasible start, and if no search finds anything feasible;
+    MissingPartError without the package of the method.
+    """
+    task = make_problem(kind, moments, **problem)
+    name = findings.name if findings else f"{kind}-{moments.name}"
+    start = task.variables(task.template) if problem.get("start") else None
+    with findings.searching(task) if findings else nullcontext():
+        if method == "nsga-ii":
+            front = _front(task, budget or BUDGETS[method], seed, smooth, findings)
+            progress(searches)
+            best = front.x[int(np.argmax(front.power.mean(axis=1)))]
+            return Optimum(task, method, name, best, front.evaluations, front)
+        results = run_searches(
+            task, method, searches=searches, budget=budget, seed=seed, start=start,
+            workers=workers, findings=findings, progress=progress,
+        )  # fmt: skip
+    return Optimum(task, method, name, results[0].x, sum(result.evaluations for result in results))
+
+
+def _front(problem: Problem, budget: int, seed: int, smooth: bool, findings: Findings | None) -> Front:
+    """Of the powers of both groups; their average is what counts as the best so far."""
+    groups = tuple(map(load_moments, GROUPS))
+    averaged = replace(problem, table=WorkTable.of(*groups), baseline=0.0)
+    improved = partial(findings.improve, 0) if findings else None
+    return pareto_front(averaged, groups, budget, seed, smooth, improved)
+
+
+def run_searches(
     problem: Problem,
     method: str,
     *,
@@ -39,32 +153,42 @@ def optimize(
     start: Start = None,
     workers: Workers = HERE,
     findings: Findings | None = None,
-    progress: Callable[[int], None] | None = None,
+    progress: Callable[[int], None] = lambda _: None,
 ) -> list[Result]:
-    """Independent searches, best first; the outcome does not depend on where they run.
+    """Independent searches of a problem, best first; otherwise as optimize.
 
-    budget: evaluations of each search. start: ten variables, feasible; by default random. findings: where results are
-    kept, and finished ones taken from; searches on a cluster, which may not see these files, are kept when finished.
-    Raises InputError if the start is infeasible, or no search finds anything feasible. progress is told how many more
-    searches are done.
+    start: ten variables, feasible; by default random. Searches on a cluster, which may not see the files of findings,
+    are kept when finished.
     """
-    if start is not None:
-        require_feasible(problem, start, problem.template.name)
+    if start is not None and (broken := problem.violations_text(start)):
+        raise InputError(f"the start {problem.template.name} is not feasible: {broken}")
     seeds = SeedSequence(seed).spawn(searches)
     outcomes: dict[int, Result | InputError] = {**findings.finished()} if findings else {}
-    if progress:
-        progress(len(outcomes))
+    progress(len(outcomes))
     missing = [number for number in range(searches) if number not in outcomes]
-    seen = None if workers.cluster else findings
-    task = partial(search_once, problem, method, budget or BUDGETS[method], start, seen)
+    kept_at_once = None if workers.cluster else findings
+    task = partial(search_once, problem, method, budget or BUDGETS[method], start, kept_at_once)
     for index, outcome in run_tasks(task, [(number, seeds[number]) for number in missing], workers):
         outcomes[missing[index]] = outcome
         if findings and isinstance(outcome, Result):
             findings.finish(missing[index], outcome)
-        if progress:
-            progress(1)
+        progress(1)
     ordered = [outcomes[number] for number in range(searches)]
     results = [outcome for outcome in ordered if isinstance(outcome, Result)]
     if not results:
         raise next(outcome for outcome in ordered if isinstance(outcome, InputError))
     return sorted(results, key=lambda result: -result.merit)
+
+
+def search_once(
+    problem: Problem, method: str, budget: int, start: Start, findings: Findings | None, task: tuple[int, SeedSequence]
+) -> Result | InputError:
+    """One search, by its number and its own random numbers; an error, as a value, if nothing feasible turned up."""
+    number, seed = task
+    search = Search(problem, budget, partial(findings.improve, number) if findings else None)
+    with suppress(BudgetSpentError):
+        METHODS[method](search, start, np.random.default_rng(seed))
+    try:
+        return search.result()
+    except InputError as error:
+        return error

@@ -9,7 +9,7 @@ from fes_mj.common.arrays import FloatArray
 from fes_mj.common.style import COLOURS, INK, SERIES
 from fes_mj.linkage.design_file import design_toml
 from fes_mj.moments.joint_moments import GROUPS
-from fes_mj.optimization.outcome import Outcome
+from fes_mj.optimization.optimize import Optimum
 from fes_mj.optimization.pareto import FLUCTUATION, Front
 from fes_mj.optimization.winner import Winner
 from fes_mj.statics.turn import quasi_static
@@ -18,21 +18,21 @@ from fes_mj.viewing.pages import page
 POSE = np.radians(200.0)  # crank angle at which leg and linkage are spread out
 
 
-def page_html(winner: Winner, outcome: Outcome, origin: str) -> str:
+def page_html(winner: Winner, optimum: Optimum, origin: str) -> str:
     """The page. origin: how the design was found, and on a second line the command that finds it again.
 
     Raises MissingPartError without the extra "report".
     """
-    front = outcome.front
+    front = optimum.front
     return page(
         Path(__file__).with_name("page.html.j2"),
         winner=winner,
         origin=origin.splitlines(),
-        constraints=outcome.limit_rows,
-        space=outcome.problem.limits.space,
+        constraints=optimum.limit_rows,
+        space=optimum.problem.limits.space,
         figures=_figures(winner),
         front=front,
-        front_figures=_front_figures(front, outcome.x) if front else (),
+        front_figures=_front_figures(front, optimum.x) if front else (),
         toml=design_toml(winner.design, origin),
     )
 

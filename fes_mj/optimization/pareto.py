@@ -8,20 +8,16 @@ import numpy as np
 from fes_mj.common.arrays import FloatArray, IntArray
 from fes_mj.common.errors import InputError, require_extra
 from fes_mj.common.writing import csv_text
-from fes_mj.linkage import kinematics
 from fes_mj.linkage.batch import take
-from fes_mj.linkage.design import Design
-from fes_mj.linkage.legs import all_legs
 from fes_mj.linkage.variables import LENGTHS
 from fes_mj.moments.joint_moments import GROUPS, JointMoments
-from fes_mj.moments.torque_map import torque_map
+from fes_mj.optimization.evenness import fluctuation
+from fes_mj.optimization.limits import VARIED
 from fes_mj.optimization.problem import Evaluation, Problem
-from fes_mj.optimization.problem_file import VARIED
 from fes_mj.optimization.search import Improved, Search
-from fes_mj.statics.turn import virtual_work
 
 POPULATION = 100
-FLUCTUATION = "fluctuation of energy"  # the coefficient, see fluctuation()
+FLUCTUATION = "fluctuation of energy"  # the coefficient, see evenness.fluctuation
 _ROWS = 12  # of the front's table
 CSV_MARK = f"power_{GROUPS[0]}_W,power_{GROUPS[1]}_W,{VARIED[0]},"
 
@@ -45,7 +41,7 @@ class Front:
             for power, x in zip(self.power.tolist(), self.x.tolist(), strict=True)
         ]
         if self.fluctuation is not None:
-            rows = [row | {"fluctuation": each} for row, each in zip(rows, self.fluctuation.tolist(), strict=True)]
+            rows = [row | {"fluctuation": value} for row, value in zip(rows, self.fluctuation.tolist(), strict=True)]
         return rows
 
     def as_csv(self) -> str:
@@ -96,57 +92,45 @@ def pareto_front(
     """
     require_extra("optimize", "pymoo")
     from pymoo.algorithms.moo.nsga2 import NSGA2
-    from pymoo.core.problem import Problem as Vectorized
-    from pymoo.optimize import minimize
+    from pymoo.core.problem import Problem as Space
+    from pymoo.problems.static import StaticProblem
     from pymoo.util.nds.non_dominated_sorting import NonDominatedSorting
 
-    search = Search(problem, budget, improved)
-
-    def objectives(evaluation: Evaluation) -> FloatArray:
-        """To be made small, shape (n, objectives); any number where a design is not feasible."""
-        goals = [*-np.nan_to_num(evaluation.power).T]
-        if smooth:
-            goals.append(np.zeros(len(evaluation.x)))
-            batch, feasible = problem.batch(evaluation.x), evaluation.feasible
-            if feasible.any():
-                goals[-1][feasible] = fluctuation(take(batch, feasible), moments[0])
-        return np.column_stack(goals)
-
-    class Population(Vectorized):  # type: ignore[misc]
-        def __init__(self) -> None:
-            low, high = problem.limits.search[: len(LENGTHS)].T
-            count = problem.table.sets + smooth
-            super().__init__(n_var=len(LENGTHS), n_obj=count, n_ieq_constr=len(problem.constraints), xl=low, xu=high)
-
-        def _evaluate(self, x: FloatArray, out: dict[str, Any]) -> None:
-            evaluation = problem.evaluate(x)
-            search.note(evaluation.x, np.where(evaluation.feasible, evaluation.power.mean(axis=1), -np.inf))
-            out["F"], out["G"] = objectives(evaluation), -evaluation.scaled_margins
-
-    result = minimize(Population(), NSGA2(pop_size=POPULATION), ("n_eval", budget), seed=seed, verbose=False)
-    if result.X is None:
+    low, high = problem.limits.search[: len(LENGTHS)].T
+    goals, limits = problem.table.sets + smooth, len(problem.constraints)
+    space = Space(n_var=len(LENGTHS), n_obj=goals, n_ieq_constr=limits, xl=low, xu=high)
+    search, nsga = Search(problem, budget, improved), NSGA2(pop_size=POPULATION)
+    nsga.setup(space, termination=("n_eval", budget), seed=seed)
+    while nsga.has_next():
+        population = nsga.ask()
+        evaluation = problem.evaluate(population.get("X"))
+        search.note(evaluation.x, np.where(evaluation.feasible, evaluation.power.mean(axis=1), -np.inf))
+        values = {"F": _objectives(problem, evaluation, moments, smooth), "G": -evaluation.scaled_margins}
+        nsga.evaluator.eval(StaticProblem(space, **values), population)
+        nsga.tell(infills=population)
+    best = nsga.result().X
+    if best is None:
         raise InputError(
             f"no feasible {problem.template.linkage.kind} found in {budget} evaluations; "
             "loosen a limit, widen the design space or raise --budget"
         )
     # NSGA-II thins out its front where it is crowded, whichever design it loses
-    x = np.unique(np.vstack([np.atleast_2d(result.X), search.best_x[: len(LENGTHS)]]), axis=0)
-    goals = objectives(problem.evaluate(x))
-    front = NonDominatedSorting().do(goals, only_non_dominated_front=True)
-    order = front[np.argsort(goals[front, 0])]
+    x = np.unique(np.vstack([np.atleast_2d(best), search.best_x[: len(LENGTHS)]]), axis=0)
+    objectives = _objectives(problem, problem.evaluate(x), moments, smooth)
+    front = NonDominatedSorting().do(objectives, only_non_dominated_front=True)
+    order = front[np.argsort(objectives[front, 0])]
     evaluation = problem.evaluate(x[order])
-    return Front(evaluation.x, evaluation.power, goals[order, -1] if smooth else None, search.evaluations)
+    return Front(evaluation.x, evaluation.power, objectives[order, -1] if smooth else None, search.evaluations)
 
 
-def fluctuation(design: Design, moments: JointMoments, points: int = 360) -> FloatArray:
-    """Coefficient of fluctuation of energy of two legs half a turn apart, for a batch, shape (designs,).
-
-    Largest less smallest surplus of the work done over the mean, by the work of a turn: what a flywheel has to store.
-    """
-    crank_angle = np.arange(points) * (2 * np.pi / points)
-    motion = kinematics.solve(design, crank_angle)
-    leg = virtual_work(motion, torque_map(moments).along(motion, design.linkage.cadence))
-    crank = np.atleast_2d(all_legs(leg))
-    mean = crank.mean(axis=1, keepdims=True)
-    surplus = np.cumsum(crank - mean, axis=1)
-    return np.asarray(np.ptp(surplus, axis=1) / (points * np.abs(mean[:, 0])))
+def _objectives(
+    problem: Problem, evaluation: Evaluation, moments: tuple[JointMoments, ...], smooth: bool
+) -> FloatArray:
+    """To be made small, shape (n, objectives); any number where a design is not feasible."""
+    columns = [*-np.nan_to_num(evaluation.power).T]
+    if smooth:
+        columns.append(np.zeros(len(evaluation.x)))
+        feasible = evaluation.feasible
+        if feasible.any():
+            columns[-1][feasible] = fluctuation(take(problem.batch(evaluation.x), feasible), moments[0])
+    return np.column_stack(columns)

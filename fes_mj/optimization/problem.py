@@ -16,17 +16,20 @@ from fes_mj.linkage.design_file import load_design
 from fes_mj.linkage.joints import JOINTS, PerJoint
 from fes_mj.linkage.variables import VARIABLES, component, replaced
 from fes_mj.moments.joint_moments import JointMoments
-from fes_mj.optimization.constraints import (
+from fes_mj.optimization.evenness import RippleLimit
+from fes_mj.optimization.limits import (
+    DEFAULT,
+    VARIED,
     Constraint,
+    Limits,
     length_constraints,
     length_values,
+    load_limits,
     margins,
     motion_constraints,
     motion_values,
 )
 from fes_mj.optimization.people import ONE_RIDER, People
-from fes_mj.optimization.problem_file import DEFAULT, VARIED, Limits, load_limits
-from fes_mj.optimization.ripple import RippleLimit
 from fes_mj.statics.cycles import TURN_POINTS, WorkTable, cycles, joint_speeds, uncertain_table
 
 LENGTH_COUNT = len(VARIED) - 1  # all variables but the gear ratio, which comes last
@@ -174,8 +177,8 @@ class Problem:
                 gear_ratio[sound] = np.fmin(for_all * (1 - _HAIR), self.gear_ratios[1])
             ratios = np.repeat(gear_ratio[sound], riders)
             power[sound] = self.people.power(turn.work * (cadence / (2 * np.pi) * ratios[:, None]))
-            each = motion_values(turn, self.table.measured_on, speeds, ratios)
-            motion[sound] = self._worst(np.column_stack([each, *self._ripple(ridden, each, ratios)]))
+            by_rider = motion_values(turn, self.table.measured_on, speeds, ratios)
+            motion[sound] = self._worst(np.column_stack([by_rider, *self._ripple(ridden, by_rider, ratios)]))
         values = np.hstack([lengths, motion])
         scales = np.array([constraint.scale for constraint in self.constraints])
         filled = np.column_stack([free, gear_ratio])
@@ -198,21 +201,32 @@ class Problem:
             if margin < 0
         ]
 
+    def violations_text(self, x: FloatArray) -> str:
+        """Which constraints a design, shape (variables,), violates and by how much; empty if it is feasible."""
+        evaluation = self.evaluate(x[None])
+        if evaluation.feasible[0]:
+            return ""
+        parts = (
+            f"{v['name']} is {v['value']:.4g} {v['unit']}".rstrip() + f" (limit {v['limit']:.4g})"
+            for v in self.violations(evaluation)
+        )
+        return ", ".join(parts) or "the thigh swings through 180 deg or more"
+
     def _ripple(self, design: Design, values: FloatArray, gear_ratio: FloatArray) -> list[FloatArray]:
         """Where it is limited, the ripple of a batch that keeps the other limits on the turn (`values`), else NaN."""
         if not self.ripple:
             return []
-        found = np.full(len(values), np.nan)
-        good = np.all(margins(self.motion[: values.shape[1]], values) >= 0, axis=1)
-        if good.any():
+        ripple = np.full(len(values), np.nan)
+        within = np.all(margins(self.motion[: values.shape[1]], values) >= 0, axis=1)
+        if within.any():
             geared = design.changed({"gear_ratio": gear_ratio[:, None]}, {})
-            found[good] = self.ripple.ripple(take(geared, good))
-        return [found]
+            ripple[within] = self.ripple.ripple(take(geared, within))
+        return [ripple]
 
     def _worst(self, values: FloatArray) -> FloatArray:
         """Of each constraint on the turn over all riders, shape (n, constraints); values: (n * riders, constraints)."""
-        each = values.reshape(-1, self.people.count, values.shape[1])
-        return np.asarray(np.where([c.at_least for c in self.motion], each.min(axis=1), each.max(axis=1)))
+        riders = values.reshape(-1, self.people.count, values.shape[1])
+        return np.asarray(np.where([c.at_least for c in self.motion], riders.min(axis=1), riders.max(axis=1)))
 
 
 def make_problem(
@@ -226,13 +240,14 @@ def make_problem(
     hip_speed: float | None = None,
     caution: float = 0.0,
     ripple: float | None = None,
+    people: People = ONE_RIDER,
 ) -> Problem:
     """The problem for a kind of six-bar ("crt", "cdt") under joint moments.
 
     compared_with: the design whose mean joint speeds are the limits (unless given, deg/s) and whose power is the
     baseline. ripple: largest of the crank speed when ridden. start: a design whose rider, seat and coupler angle are
-    kept; by default a printed one. limits: a problem file. Raises InputError for what cannot be used, and for a start
-    of another kind.
+    kept; by default a printed one. limits: a problem file. caution, people: see Problem. Raises InputError for what
+    cannot be used, and for a start of another kind.
     """
     template = load_design(start or ("r1" if kind == "crt" else "d1"))
     if template.linkage.kind != kind:
@@ -241,8 +256,8 @@ def make_problem(
         )
     other, table = load_design(compared_with), uncertain_table(moments) if caution else WorkTable.of(moments)
     # a hair above, so that the design itself is within its own limits
-    own, given = joint_speeds(other, table).map(lambda speed: speed * (1 + 1e-9)), PerJoint(knee_speed, hip_speed)
-    speed = PerJoint(*(mine if asked is None else asked for mine, asked in zip(own, given, strict=True)))
+    own, asked = joint_speeds(other, table).map(lambda speed: speed * (1 + 1e-9)), PerJoint(knee_speed, hip_speed)
+    speed = PerJoint(*(one if limit is None else limit for one, limit in zip(own, asked, strict=True)))
     baseline = cycles(other, table).work[0] * other.linkage.cadence / (2 * math.pi)
     even = None if ripple is None else RippleLimit(ripple, moments)
-    return Problem(template, table, load_limits(limits), speed, caution, baseline, ripple=even)
+    return Problem(template, table, load_limits(limits), speed, caution, baseline, people, even)

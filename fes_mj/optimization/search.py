@@ -1,17 +1,29 @@
-"""What all single-objective methods share: a counted, remembered evaluation, and the result."""
+"""The single-objective methods: two evolutionary ones from libraries, the paper's own, and the search they all share.
+
+The evolutionary ones vary all but the gear ratio, which follows from the joint speeds.
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
+from scipy.optimize import differential_evolution
 
 from fes_mj.common.arrays import FloatArray
-from fes_mj.common.errors import InputError
+from fes_mj.common.errors import InputError, require_extra
 from fes_mj.optimization.problem import INFEASIBLE, LENGTH_COUNT, Problem
 
 Improved: TypeAlias = Callable[[FloatArray, float], None]  # a feasible design, shape (variables,), and its merit
-_SAMPLE = 2000
+Start: TypeAlias = FloatArray | None
+POPULATION = 7  # per variable
+# Part of the search range; a restart of CMA-ES begins at another random feasible design.
+CMA_SIGMA = 0.05
+CMA_POPULATION = 32  # three times pycma's own: a population costs hardly more than a few designs
+STEP = 0.01  # of every variable: m, and 1 for the gear ratio (Eq. 18)
+PATIENCE = 10_000  # feasible trials in a row without improvement
+_SMALLEST_BLOCK, _LARGEST_BLOCK = 16, 2048
+_SAMPLE = 2000  # random designs tried at once for a feasible one
 
 
 class BudgetSpentError(Exception):
@@ -67,8 +79,8 @@ class Search:
 
     def result(self) -> Result:
         """The best design so far. Raises InputError, saying what stood in the way, if none was feasible."""
-        broken = violations_text(self.problem, self.best_x)
-        if broken is not None:
+        broken = self.problem.violations_text(self.best_x)
+        if broken:
             kind = self.problem.template.linkage.kind
             raise InputError(
                 f"no feasible {kind} found in {self.evaluations} evaluations; the closest violates: {broken}. "
@@ -87,28 +99,89 @@ def feasible_start(search: Search, random: np.random.Generator) -> FloatArray:
         x = random.uniform(low, high, (min(_SAMPLE, search.budget - search.evaluations), len(low)))
         x[:, LENGTH_COUNT:-1] = 0.0  # of people, whom seats suit in which all their legs are equally stretched
         evaluation = search.problem.evaluate(x)
-        found = evaluation.feasible.any()
-        used = int(np.argmax(evaluation.feasible)) + 1 if found else len(x)
+        any_feasible = evaluation.feasible.any()
+        used = int(np.argmax(evaluation.feasible)) + 1 if any_feasible else len(x)
         search.note(evaluation.x[:used], search.problem.merit(evaluation)[:used])
-        if found:
+        if any_feasible:
             return np.asarray(evaluation.x[used - 1])
     raise BudgetSpentError
 
 
-def require_feasible(problem: Problem, x: FloatArray, name: str) -> None:
-    """Raise InputError naming the violated constraints if a start, shape (variables,), is not feasible."""
-    broken = violations_text(problem, x)
-    if broken is not None:
-        raise InputError(f"the start {name} is not feasible: {broken}")
+def differential(search: Search, start: Start, random: np.random.Generator) -> None:
+    """Differential evolution (scipy), started again from a new population whenever one has converged."""
+    bounds = search.problem.search[:-1]
+    while True:
+        differential_evolution(
+            lambda x: -search(x.T),
+            bounds,
+            x0=None if start is None else np.clip(start[:-1], *bounds.T),
+            popsize=POPULATION,
+            maxiter=search.budget,
+            tol=1e-6,
+            mutation=(0.4, 0.9),
+            recombination=0.9,
+            rng=random,
+            vectorized=True,
+            updating="deferred",
+            polish=False,
+        )
+        start = None
 
 
-def violations_text(problem: Problem, x: FloatArray) -> str | None:
-    """Which constraints a design, shape (variables,), violates and by how much; None if it is feasible."""
-    evaluation = problem.evaluate(x[None])
-    if evaluation.feasible[0]:
-        return None
-    parts = (
-        f"{v['name']} is {v['value']:.4g} {v['unit']}".rstrip() + f" (limit {v['limit']:.4g})"
-        for v in problem.violations(evaluation)
-    )
-    return ", ".join(parts) or "the thigh swings through 180 deg or more"
+def cma_es(search: Search, start: Start, random: np.random.Generator) -> None:
+    """CMA-ES (pycma), started again with a doubled population whenever it has converged."""
+    cma = require_extra("optimize", "cma")
+    low, high = search.problem.search[:-1].T
+    population = CMA_POPULATION
+    while True:
+        x0 = feasible_start(search, random) if start is None else start
+        options: dict[str, Any] = {
+            "bounds": [0, 1],
+            "popsize": population,
+            "seed": int(random.integers(1, 2**31)),
+            "verbose": -9,
+            "tolfun": 1e-6,
+        }
+        strategy = cma.CMAEvolutionStrategy(np.clip((x0[:-1] - low) / (high - low), 0, 1), CMA_SIGMA, options)
+        while not strategy.stop():
+            trials = np.array(strategy.ask())
+            strategy.tell(trials, -search(low + trials * (high - low)))
+        start, population = None, 2 * population
+
+
+def random_pursuit(search: Search, start: Start, random: np.random.Generator, patience: int = PATIENCE) -> None:
+    """The paper's method (Section 6): small uniform steps from the best design, kept if feasible and better.
+
+    It goes on until `patience` feasible trials in a row brought nothing.
+
+    Trials are evaluated in blocks, in which those after an improvement are discarded and not counted: the
+    sequence of trials is distributed exactly as one at a time.
+    """
+    problem, failures, block = search.problem, 0, _SMALLEST_BLOCK
+    start = feasible_start(search, random) if start is None else start
+    search(start[None])
+    while failures < patience and search.evaluations < search.budget:
+        x = search.best_x + random.uniform(-STEP, STEP, (block, len(start)))
+        evaluation = problem.evaluate(x[: search.budget - search.evaluations])
+        merit = problem.merit(evaluation)
+        better = np.flatnonzero(merit > search.best)
+        trials = np.cumsum(evaluation.feasible)
+        used = int(better[0]) + 1 if better.size else len(merit)
+        used = min(used, int(np.searchsorted(trials, patience - failures)) + 1, len(merit))
+        improved = bool(better.size) and used > better[0]
+        search.note(evaluation.x[:used], merit[:used])
+        failures = 0 if improved else failures + int(trials[used - 1])
+        # blocks as long as improvements are apart
+        block = int(np.clip(2 * used if improved else 2 * block, _SMALLEST_BLOCK, _LARGEST_BLOCK))
+    if search.evaluations >= search.budget:
+        raise BudgetSpentError
+
+
+Method: TypeAlias = Callable[[Search, Start, np.random.Generator], None]
+METHODS: dict[str, Method] = {
+    "differential-evolution": differential,
+    "cma-es": cma_es,
+    "random-pursuit": random_pursuit,
+}
+# Evaluations of one search. Random pursuit stops by itself, after 0.04 to 1 million trials.
+BUDGETS = {"differential-evolution": 50_000, "cma-es": 50_000, "random-pursuit": 5_000_000, "nsga-ii": 50_000}

@@ -13,7 +13,7 @@ from fes_mj.cli.app import run
 from fes_mj.common.errors import UnstableError
 from fes_mj.linkage.design_file import design_toml
 from fes_mj.optimization.findings import Findings
-from fes_mj.optimization.problem_file import DEFAULT
+from fes_mj.optimization.limits import DEFAULT
 from fes_mj.optimization.search import Result
 
 QUICK = ["--budget", "6000", "--searches", "1", "--seed", "2"]
@@ -75,7 +75,7 @@ def test_riders_of_a_population_are_listed_with_their_seats(capsys: pytest.Captu
     assert (own["forward_m"], own["up_m"]) == (0.0, 0.0)
     assert len({rider["thigh"] for rider in others}) == len(others) > 1
     assert min(r["power_mean_W"] for r in found["riders"]) < found["power_people_W"]
-    assert "--samples 50 --sample-seed 1" in found["command"]
+    assert "--samples=50 --sample-seed=1" in found["command"]
     assert run(search) == 0
     assert "by these riders" in capsys.readouterr().out
 

@@ -3,8 +3,8 @@
 from dataclasses import replace
 
 import fes_mj
+from fes_mj.optimization.limits import load_limits
 from fes_mj.optimization.problem import Problem
-from fes_mj.optimization.problem_file import load_limits
 from fes_mj.statics.cycles import WorkTable, joint_speeds
 
 SIX_BARS = ("r1", "r2", "d1", "d2")

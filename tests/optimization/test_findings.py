@@ -15,7 +15,7 @@ import pytest
 import fes_mj
 from fes_mj.common.provenance import digest
 from fes_mj.optimization.findings import Findings
-from fes_mj.optimization.optimize import optimize
+from fes_mj.optimization.optimize import run_searches
 from fes_mj.optimization.search import Result
 from tests.optimization.conftest import problem_of
 
@@ -23,7 +23,7 @@ MARK = "FES_MJ_TEST_RUN"
 
 
 def findings_at(out: Path, **recipe: str) -> Findings:
-    return Findings(out, problem_of("d1"), "how", {"command": "fes_mj optimize", **recipe})
+    return Findings(out, "how", {"command": "fes_mj optimize", **recipe})
 
 
 def contents(folder: Path) -> dict[str, bytes]:
@@ -33,7 +33,7 @@ def contents(folder: Path) -> dict[str, bytes]:
 def test_the_design_file_follows_the_best_and_the_folder_goes_in_the_end(tmp_path: Path) -> None:
     findings, problem = findings_at(tmp_path / "best.toml"), problem_of("d1")
     x = problem.variables(problem.template)
-    with findings.searching():
+    with findings.searching(problem_of("d1")):
         assert not findings.out.exists()
         findings.improve(0, x, 5.0)
         first = findings.out.read_bytes()
@@ -49,7 +49,7 @@ def test_the_design_file_follows_the_best_and_the_folder_goes_in_the_end(tmp_pat
 
 def test_a_search_that_finds_nothing_leaves_nothing(tmp_path: Path) -> None:
     findings = findings_at(tmp_path / "best.toml")
-    with pytest.raises(KeyboardInterrupt), findings.searching():
+    with pytest.raises(KeyboardInterrupt), findings.searching(problem_of("d1")):
         raise KeyboardInterrupt
     assert contents(tmp_path) == {}
 
@@ -58,7 +58,7 @@ def test_a_design_that_was_there_is_not_replaced_by_a_search_that_is_not_finishe
     findings = findings_at(tmp_path / "best.toml")
     findings.out.write_text("an earlier design")
     for _ in range(2):  # also when it goes on
-        with findings.searching():
+        with findings.searching(problem_of("d1")):
             findings.improve(0, problem_of("d1").variables(fes_mj.load_design("d1")), 5.0)
         assert findings.out.read_text() == "an earlier design"
         assert fes_mj.load_design(findings.so_far).linkage.kind == "cdt"
@@ -67,7 +67,7 @@ def test_a_design_that_was_there_is_not_replaced_by_a_search_that_is_not_finishe
 def test_another_process_with_a_better_design_is_not_overruled(tmp_path: Path) -> None:
     one, other, problem = findings_at(tmp_path / "best.toml"), findings_at(tmp_path / "best.toml"), problem_of("d1")
     x = problem.variables(problem.template)
-    with one.searching(), other.searching():
+    with one.searching(problem), other.searching(problem):
         other.improve(1, 0.999 * x, 6.0)
         one.improve(0, x, 5.0)  # it does not know of the other's
     np.testing.assert_array_equal(problem.variables(fes_mj.load_design(one.out)), 0.999 * x)
@@ -75,13 +75,13 @@ def test_another_process_with_a_better_design_is_not_overruled(tmp_path: Path) -
 
 def test_finished_searches_are_not_done_again(tmp_path: Path) -> None:
     problem, findings = problem_of("d1"), findings_at(tmp_path / "best.toml")
-    with findings.searching():
-        whole = optimize(problem, "random-pursuit", searches=3, budget=3000, seed=1, findings=findings)
+    with findings.searching(problem_of("d1")):
+        whole = run_searches(problem, "random-pursuit", searches=3, budget=3000, seed=1, findings=findings)
         (findings.folder / "search-1.json").unlink()
         stored = findings.finished()
         assert sorted(stored) == [0, 2]
         findings.finish(0, replace(stored[0], merit=1e3))  # to be recognised
-        again = optimize(problem, "random-pursuit", searches=3, budget=3000, seed=1, findings=findings)
+        again = run_searches(problem, "random-pursuit", searches=3, budget=3000, seed=1, findings=findings)
     assert again[0].merit == 1e3
     assert sorted(each.merit for each in again)[:2] == sorted(
         each.merit for each in whole if each.merit != stored[0].merit
@@ -93,14 +93,13 @@ def test_finished_searches_are_not_done_again(tmp_path: Path) -> None:
 
 def test_what_another_search_has_found_is_refused_by_name(tmp_path: Path) -> None:
     findings, problem = findings_at(tmp_path / "best.toml"), problem_of("d1")
-    with findings.searching():
+    with findings.searching(problem_of("d1")):
         findings.finish(0, Result(problem.variables(problem.template), 5.0, 10, np.array([[1, 5.0]])))
     before = contents(findings.folder)
     with pytest.raises(fes_mj.InputError, match=r"best\.search: .*different: command\).*was: fes_mj optimize\. "):
-        findings_at(tmp_path / "best.toml", command="another").searching().__enter__()
-    other = Findings(findings.out, problem_of("d2"), "how", {"command": "fes_mj optimize"})
+        findings_at(tmp_path / "best.toml", command="another").searching(problem).__enter__()
     with pytest.raises(fes_mj.InputError, match=r"different: problem\)"):
-        other.searching().__enter__()
+        findings_at(tmp_path / "best.toml").searching(problem_of("d2")).__enter__()
     assert contents(findings.folder) == before
 
 
@@ -111,7 +110,7 @@ def test_a_damaged_record_is_named(found: str, tmp_path: Path) -> None:
     (findings.folder / "recipe.json").write_text("{}")
     (findings.folder / "best-0.json").write_text(found)
     with pytest.raises(fes_mj.InputError, match=r"best-0\.json"):
-        findings.searching().__enter__()
+        findings.searching(problem_of("d1")).__enter__()
 
 
 def test_a_folder_of_somebody_else_is_left_alone(tmp_path: Path) -> None:
@@ -119,7 +118,7 @@ def test_a_folder_of_somebody_else_is_left_alone(tmp_path: Path) -> None:
     findings.folder.mkdir()
     (findings.folder / "thesis.tex").write_text("mine")
     with pytest.raises(fes_mj.InputError, match=r"best\.search: .* move what is in it, or give another -o"):
-        findings.searching().__enter__()
+        findings.searching(problem_of("d1")).__enter__()
     assert contents(findings.folder) == {"thesis.tex": b"mine"}
 
 

@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
-from fes_mj.optimization.optimize import METHODS, optimize
+import fes_mj
+from fes_mj.optimization.optimize import METHODS, optimize, run_searches
+from fes_mj.optimization.problem import make_problem
 from tests.optimization.conftest import problem_of
 
 
@@ -12,7 +14,7 @@ def test_a_seed_gives_the_same_design_and_the_budget_holds(method: str) -> None:
     if method == "cma-es":
         pytest.importorskip("cma")
     problem = problem_of("r1")
-    first, again = (optimize(problem, method, searches=2, budget=9000, seed=7) for _ in range(2))
+    first, again = (run_searches(problem, method, searches=2, budget=9000, seed=7) for _ in range(2))
     assert [result.merit for result in first] == [result.merit for result in again]
     assert np.array_equal(first[0].x, again[0].x)
     assert all(result.evaluations == 9000 for result in first)
@@ -21,11 +23,25 @@ def test_a_seed_gives_the_same_design_and_the_budget_holds(method: str) -> None:
     assert problem.evaluate(first[0].x[None]).feasible[0]
 
 
+def test_one_call_is_the_search_of_the_paper_s_problem() -> None:
+    moments = fes_mj.load_moments("p1p2")
+    optimum = optimize("crt", moments, budget=6000, searches=2, seed=2, knee_speed=100.0)
+    problem = make_problem("crt", moments, knee_speed=100.0)
+    best = run_searches(problem, "differential-evolution", budget=6000, searches=2, seed=2)[0]
+    assert np.array_equal(optimum.x, best.x)
+    assert optimum.feasible
+    assert optimum.violations == []
+    assert optimum.evaluations == 12_000
+    assert optimum.power == pytest.approx(fes_mj.quasi_static(optimum.design, moments).power_mean, rel=1e-4)
+    with pytest.raises(TypeError, match="budgte"):
+        optimize("crt", moments, budgte=6000)
+
+
 def test_processes_find_the_same_design() -> None:
     pytest.importorskip("joblib")
     from fes_mj.common.parallel import Workers
 
     problem = problem_of("d1")
-    serial = optimize(problem, "differential-evolution", searches=2, budget=2000, seed=1)
-    parallel = optimize(problem, "differential-evolution", searches=2, budget=2000, seed=1, workers=Workers(jobs=2))
+    serial = run_searches(problem, "differential-evolution", searches=2, budget=2000, seed=1)
+    parallel = run_searches(problem, "differential-evolution", searches=2, budget=2000, seed=1, workers=Workers(jobs=2))
     assert [result.merit for result in serial] == [result.merit for result in parallel]

@@ -9,8 +9,9 @@ import pytest
 
 import fes_mj
 from fes_mj.common.style import LINKS
-from fes_mj.optimization.outcome import Outcome
-from fes_mj.optimization.pareto import Front, fluctuation
+from fes_mj.optimization.evenness import fluctuation
+from fes_mj.optimization.optimize import Optimum
+from fes_mj.optimization.pareto import Front
 from fes_mj.optimization.winner import assess
 from fes_mj.statics.cycles import WorkTable, cycles
 from fes_mj.statics.turn import quasi_static
@@ -40,7 +41,7 @@ def front() -> Front:
 def html(front: Front) -> str:
     problem = problem_of("d1")
     winner = assess(problem.template, fes_mj.load_design("trt"), MOMENTS)
-    return page_html(winner, Outcome(problem, "nsga-ii", front.x[0], 2, front), "Found by hand:\nfes_mj ...")
+    return page_html(winner, Optimum(problem, "nsga-ii", "d1", front.x[0], 2, front), "Found by hand:\nfes_mj ...")
 
 
 def test_the_page_needs_no_network_and_shows_smoothness(html: str) -> None:

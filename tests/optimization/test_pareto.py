@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 import fes_mj
-from fes_mj.optimization.pareto import fluctuation, pareto_front
-from fes_mj.statics.turn import quasi_static
+from fes_mj.optimization.pareto import pareto_front
 from tests.optimization.conftest import problem_of
 
 
@@ -31,15 +30,3 @@ def test_the_front_is_feasible_and_nobody_on_it_is_dominated() -> None:
     assert powers == sorted(powers)
     top = int(np.argmax(front.power.mean(axis=1)))
     np.testing.assert_allclose([front.power[top].mean(), *front.x[top]], seen[-1], rtol=1e-12)
-
-
-def test_fluctuation_of_a_known_curve(moments: fes_mj.JointMoments) -> None:
-    """Against the surplus of two legs summed the slow way."""
-    design = fes_mj.load_design("d1")
-    curve = quasi_static(design, moments, points=360).crank_moment
-    crank = [curve[i] + curve[(i + 180) % 360] for i in range(360)]
-    mean, surplus, low, high = sum(crank) / 360, 0.0, 0.0, 0.0
-    for value in crank:
-        surplus += value - mean
-        low, high = min(low, surplus), max(high, surplus)
-    assert fluctuation(design, moments)[0] == pytest.approx((high - low) / (360 * mean), rel=1e-9)

@@ -9,7 +9,7 @@ import pytest
 import fes_mj
 from fes_mj.fit.seat import SEAT_LIMITS, best_seats, fit
 from fes_mj.linkage.riders import populations
-from fes_mj.optimization.optimize import optimize
+from fes_mj.optimization.optimize import run_searches
 from fes_mj.optimization.people import ONE_RIDER, STATISTICS, sampled
 from fes_mj.optimization.problem import LENGTH_COUNT, Problem
 from fes_mj.optimization.search import Search, feasible_start
@@ -107,7 +107,7 @@ def test_a_search_finds_a_design_that_suits_people_better() -> None:
     pytest.importorskip("cma")
     printed = fes_mj.load_design("r1")
     problem = of_people("r1")
-    best = optimize(problem, "cma-es", budget=12_000, seed=1)[0]
+    best = run_searches(problem, "cma-es", budget=12_000, seed=1)[0]
     evaluation = problem.evaluate(best.x[None])
     assert evaluation.feasible[0]
     assert evaluation.power[0, 0] == pytest.approx(best.merit)

@@ -12,7 +12,7 @@ import fes_mj
 from fes_mj.cli.options import crank_speed
 from fes_mj.linkage.design_file import design_toml
 from fes_mj.linkage.turning import turning
-from fes_mj.optimization.optimize import optimize
+from fes_mj.optimization.optimize import run_searches
 from fes_mj.optimization.problem import LENGTH_COUNT, Problem
 from fes_mj.statics.cycles import joint_speeds
 from tests.optimization.conftest import SIX_BARS, TABLE, problem_of
@@ -98,7 +98,7 @@ def test_whatever_is_feasible_is_accepted_by_the_other_commands(
     problem = replace(problem, limits=limits, joint_speed=problem.joint_speed.map(lambda speed: 4 * speed))
     x = np.random.default_rng(0).uniform(low, high, (20_000, LENGTH_COUNT + 1))
     nine, ten = problem.evaluate(x[:, :LENGTH_COUNT]), problem.evaluate(x)
-    driven = [result.x for result in optimize(problem, "differential-evolution", searches=2, budget=8000)]
+    driven = [result.x for result in run_searches(problem, "differential-evolution", searches=2, budget=8000)]
     for found in [*nine.x[nine.feasible][:20], *ten.x[ten.feasible][:20], *driven]:
         file.write_text(design_toml(problem.design(found, "found")))
         design = fes_mj.load_design(file)

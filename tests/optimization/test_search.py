@@ -1,14 +1,16 @@
-"""What all methods share: a start that is feasible, and words for what is not."""
+"""What all methods share, random pursuit as the paper describes it, and evolution beside it."""
 
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import fes_mj
-from fes_mj.optimization.optimize import optimize
-from fes_mj.optimization.search import Search, feasible_start
-from tests.optimization.conftest import problem_of
+from fes_mj.optimization.optimize import run_searches
+from fes_mj.optimization.search import STEP, BudgetSpentError, Search, feasible_start, random_pursuit
+from fes_mj.statics.turn import quasi_static
+from tests.optimization.conftest import SIX_BARS, problem_of
 
 
 def test_random_starts_are_feasible_and_different() -> None:
@@ -24,7 +26,7 @@ def test_an_empty_feasible_set_is_said_to_be_one() -> None:
     problem = problem_of("r1")
     impossible = replace(problem, limits=replace(problem.limits, knee_deg=(69.0, 70.0), crank_min=0.2))
     with pytest.raises(fes_mj.InputError, match=r"no feasible crt found in \d+ evaluations; the closest violates: "):
-        optimize(impossible, "differential-evolution", budget=2000)
+        run_searches(impossible, "differential-evolution", budget=2000)
 
 
 def test_an_infeasible_start_is_refused_by_name() -> None:
@@ -32,4 +34,57 @@ def test_an_infeasible_start_is_refused_by_name() -> None:
     start = problem.variables(problem.template)
     start[2] = 0.5
     with pytest.raises(fes_mj.InputError, match=r"the start d1 is not feasible: .*grashof is -0.\d+ m \(limit 0"):
-        optimize(problem, "random-pursuit", start=start)
+        run_searches(problem, "random-pursuit", start=start)
+
+
+@pytest.mark.parametrize("name", SIX_BARS)
+def test_random_pursuit_never_gets_worse_and_stays_feasible(name: str) -> None:
+    problem = problem_of(name)
+    start = problem.variables(problem.template)
+    own = float(problem.evaluate(start[None]).power[0, 0])
+    search = Search(problem, 50_000)
+    with suppress(BudgetSpentError):
+        random_pursuit(search, start, np.random.default_rng(3), patience=500)
+    result = search.result()
+    assert result.merit >= own
+    assert problem.evaluate(result.x[None]).feasible[0]
+    assert np.all(np.diff(result.history[:, 1]) > 0)
+    assert np.all(np.diff(result.history[:, 0]) > 0)
+
+
+class Recorder(Search):
+    """A search that keeps what was counted."""
+
+    def note(self, x: np.ndarray, merit: np.ndarray) -> None:
+        self.seen = [*getattr(self, "seen", []), *zip(x, merit, strict=True)]
+        super().note(x, merit)
+
+
+def test_random_pursuit_is_the_one_at_a_time_method() -> None:
+    """Replayed trial by trial: each lies within a step of the best so far, and it stops by the paper's rule."""
+    problem, patience = problem_of("d1"), 100
+    search = Recorder(problem, 10**6)
+    random_pursuit(search, problem.variables(problem.template), np.random.default_rng(5), patience)
+    best_x, best = search.seen[0]
+    failures, improvements = 0, 0
+    for x, merit in search.seen[1:]:
+        assert failures < patience, "it should have stopped"
+        assert np.abs(x - best_x).max() <= STEP
+        if merit > best:
+            best_x, best, failures, improvements = x, merit, 0, improvements + 1
+        elif problem.evaluate(x[None]).feasible[0]:
+            failures += 1
+    assert failures == patience
+    assert improvements > 5
+    assert search.evaluations == len(search.seen)
+    assert search.best == best
+
+
+def test_evolution_beats_the_printed_design_within_the_same_limits() -> None:
+    problem = problem_of("d2", grashof_min=0.005)
+    own = float(problem.evaluate(problem.variables(problem.template)[None]).power[0, 0])
+    result = run_searches(problem, "differential-evolution", budget=20_000, seed=1)[0]
+    design = problem.design(result.x, "found")
+    static = quasi_static(design, fes_mj.load_moments("p1p2"))
+    assert static.power_mean == pytest.approx(result.merit, rel=1e-4)
+    assert result.merit > own + 1.0

@@ -1,4 +1,4 @@
-"""The ripple of a population against that of a ride, and designs that are found within a limit on it."""
+"""The ripple of a population against that of a ride, designs found within a limit on it, and the crank's energy."""
 
 from dataclasses import replace
 
@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 import fes_mj
-from fes_mj.optimization.optimize import optimize
-from fes_mj.optimization.ripple import RippleLimit
+from fes_mj.optimization.evenness import RippleLimit, fluctuation
+from fes_mj.optimization.optimize import run_searches
 from fes_mj.riding.reduced import ride, steady_ripple
 from fes_mj.riding.ride import Ride, balancing_slope
+from fes_mj.statics.turn import quasi_static
 from tests.optimization.conftest import SIX_BARS, problem_of
 
 MOMENTS = fes_mj.load_moments("p1p2")
@@ -48,10 +49,22 @@ def test_what_is_found_within_the_limit_rides_as_evenly_on_a_road() -> None:
     """By the equation of motion, on the slope that takes the mean power; air and friction vary a little with speed."""
     pytest.importorskip("cma")
     problem = replace(problem_of("d1", grashof_min=0.005), ripple=LIMIT)
-    design = problem.design(optimize(problem, "cma-es", budget=8000, seed=1)[0].x, "even")
+    design = problem.design(run_searches(problem, "cma-es", budget=8000, seed=1)[0].x, "even")
     level = Ride(design, MOMENTS, transmission="fixed", duration=10.0)
     assert steady_ripple(level) < 1.01 * LIMIT.limit
     slope = balancing_slope(level)
     trace = ride(replace(level, road=replace(level.road, slope=slope)))
     speed = trace.crank_speed[trace.last_turns]
     assert np.ptp(speed) / speed.mean() == pytest.approx(steady_ripple(level), rel=0.05)
+
+
+def test_fluctuation_of_a_known_curve(moments: fes_mj.JointMoments) -> None:
+    """Against the surplus of two legs summed the slow way."""
+    design = fes_mj.load_design("d1")
+    curve = quasi_static(design, moments, points=360).crank_moment
+    crank = [curve[i] + curve[(i + 180) % 360] for i in range(360)]
+    mean, surplus, low, high = sum(crank) / 360, 0.0, 0.0, 0.0
+    for value in crank:
+        surplus += value - mean
+        low, high = min(low, surplus), max(high, surplus)
+    assert fluctuation(design, moments)[0] == pytest.approx((high - low) / (360 * mean), rel=1e-9)

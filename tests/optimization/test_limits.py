@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import fes_mj
-from fes_mj.optimization.problem_file import DEFAULT, depth_inside, load_limits
+from fes_mj.optimization.limits import DEFAULT, depth_inside, load_limits
 
 
 def test_depth_inside_a_polygon() -> None:

@@ -1,0 +1,199 @@
+"""The limits of the paper's Section 6: as a TOML file, by name, and the numbers that they limit, for populations."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from fes_mj.common.arrays import ComplexArray, FloatArray
+from fes_mj.common.errors import InputError
+from fes_mj.common.reading import DATA, Section, is_number, read_toml
+from fes_mj.linkage.assembly import LEAST_CLEARANCE, grashof_margin
+from fes_mj.linkage.design import Design
+from fes_mj.linkage.joints import JOINTS, PerJoint
+from fes_mj.linkage.variables import COMPONENTS, LENGTHS
+from fes_mj.moments.reference_tricycle import ReferenceTricycle
+from fes_mj.statics.cycles import Cycles
+
+DEFAULT = DATA / "optimization.toml"
+VARIED = (*LENGTHS, "gear_ratio")  # the ten variables x of the problem
+_LEAST_OVERLAP = 0.1  # deg
+_BOUNDS = np.array([(COMPONENTS[name].variable.low, COMPONENTS[name].variable.high) for name in LENGTHS]).T
+_PAIRS = ("knee_deg", "hip_deg")
+_NOT_NEGATIVE = ("gear_ratio_max", "joint_rounding_deg")
+_TABLES = {
+    "design_space": ("name", "polygon"),
+    "limits": ("crank_min", "rocker_min", "foot_max", "grashof_min", *_PAIRS, *_NOT_NEGATIVE),
+    "search": tuple(name for name in VARIED if name[:2] not in ("R1", "R7") or name == "R10"),
+}
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What a problem file says; lengths in m, angles in deg.
+
+    polygon: vertices of the design space as complex numbers, shape (vertices,). search: lower and upper bound of
+    each of VARIED, shape (10, 2).
+    """
+
+    space: str
+    polygon: ComplexArray
+    crank_min: float
+    rocker_min: float
+    foot_max: float
+    grashof_min: float
+    knee_deg: tuple[float, float]
+    hip_deg: tuple[float, float]
+    joint_rounding_deg: float
+    gear_ratio_max: float
+    search: FloatArray
+
+
+def load_limits(path: Path = DEFAULT) -> Limits:
+    """Read a problem file. Raises InputError naming file, key and value of what is missing, unknown, contradictory."""
+    content = read_toml(path, "problem")
+    for section, keys in (
+        (content, tuple(_TABLES)),
+        *((content.section(name), keys) for name, keys in _TABLES.items()),
+    ):
+        section.only(keys)
+        section.require(keys, f"copy it from the default problem file {DEFAULT.name}")
+    space, limits, search = (content.section(name) for name in _TABLES)
+    values: dict[str, Any] = {
+        key: limits.ascending_pair(key)
+        if key in _PAIRS
+        else limits.number(key, 0.0, allowed="a number that is not negative")
+        if key in _NOT_NEGATIVE
+        else limits.number(key)
+        for key in _TABLES["limits"]
+    }
+    polygon, bounds = _polygon(space), {key: search.ascending_pair(key) for key in _TABLES["search"]}
+    for axis, part in (("x", polygon.real), ("y", polygon.imag)):
+        width = float(np.ptp(part))
+        bounds |= {f"R1{axis}": (float(part.min()), float(part.max())), f"R7{axis}": (-width, width)}
+    return Limits(str(space.content["name"]), polygon, search=np.array([bounds[name] for name in VARIED]), **values)
+
+
+def _polygon(space: Section) -> ComplexArray:
+    value = space.content["polygon"]
+    points = value if isinstance(value, list) else [None]
+    if not all(isinstance(point, list) and len(point) == 2 and all(map(is_number, point)) for point in points):
+        space.refuse("polygon", value, "a list of vertices [x, y] in metres")
+    vertices = np.array([complex(x, y) for x, y in value])
+    area = abs(np.sum((np.conj(vertices) * np.roll(vertices, -1)).imag)) / 2
+    if len(vertices) < 3 or not 1e-6 <= area < np.inf:
+        raise InputError(
+            f"{space.path}: {space.label('polygon')} encloses no area; at least 3 vertices around some are needed"
+        )
+    return vertices
+
+
+def depth_inside(polygon: ComplexArray, points: ComplexArray) -> FloatArray:
+    """Distance of points, shape (n,), to the border of a simple polygon, m; negative outside."""
+    start, end = polygon, np.roll(polygon, -1)
+    edge, arm = end - start, points[:, None] - start
+    along = np.clip((np.conj(edge) * arm).real / np.abs(edge) ** 2, 0, 1)
+    distance = np.abs(arm - along * edge).min(axis=1)
+    # a ray to the right crosses the border an odd number of times from inside
+    spans = (start.imag > points[:, None].imag) != (end.imag > points[:, None].imag)
+    crosses = spans & ((np.conj(edge) * arm).imag * np.sign(edge.imag) > 0)
+    return np.asarray(np.where(crosses.sum(axis=1) % 2 == 1, distance, -distance))
+
+
+class Constraint(NamedTuple):
+    """A named limit on a number, in `unit`; `scale` makes violations of different units comparable."""
+
+    name: str
+    unit: str
+    at_least: bool
+    limit: float
+    scale: float
+
+    def margin(self, value: Any) -> Any:
+        """How far inside the limit a value is, in `unit`; negative if it violates it."""
+        return value - self.limit if self.at_least else self.limit - value
+
+
+def length_constraints(limits: Limits) -> tuple[Constraint, ...]:
+    """Constraints on the lengths alone."""
+    return (
+        Constraint("crank_length", "m", True, limits.crank_min, 0.01),
+        Constraint("rocker_length", "m", True, limits.rocker_min, 0.01),
+        Constraint("ankle_to_pedal", "m", False, limits.foot_max, 0.01),
+        Constraint("lengths_inside", "m", True, 0.0, 0.01),
+        Constraint("crank_shortest", "m", True, 0.0, 0.01),
+        Constraint("grashof", "m", True, max(limits.grashof_min, LEAST_CLEARANCE), 0.01),
+        Constraint("rocker_pivot_inside", "m", True, 0.0, 0.01),
+        Constraint("crank_centre_inside", "m", True, 0.0, 0.01),
+    )
+
+
+def range_constraints(limits: Limits) -> tuple[Constraint, ...]:
+    """Constraints on the smallest and the largest angle of each joint."""
+    slack = limits.joint_rounding_deg
+    (knee_low, knee_high), (hip_low, hip_high) = limits.knee_deg, limits.hip_deg
+    return (
+        Constraint("knee_min", "deg", True, knee_low - slack, 5.0),
+        Constraint("knee_max", "deg", False, knee_high + slack, 5.0),
+        Constraint("hip_min", "deg", True, hip_low - slack, 5.0),
+        Constraint("hip_max", "deg", False, hip_high + slack, 5.0),
+    )
+
+
+def motion_constraints(
+    limits: Limits, joint_speed: PerJoint[float], gear_ratios: tuple[float, float], ripple: float | None
+) -> tuple[Constraint, ...]:
+    """Constraints on the turn; joint_speed in deg/s, as of Problem."""
+    return (
+        Constraint("leg_reach", "m", True, LEAST_CLEARANCE, 0.01),
+        *range_constraints(limits),
+        *(Constraint(f"{joint}_speed", "deg/s", False, speed, 10.0) for joint, speed in joint_speed.items()),
+        *(Constraint(f"{joint}_overlap", "deg", True, _LEAST_OVERLAP, 5.0) for joint in JOINTS),
+        Constraint("gear_ratio_min", "", True, gear_ratios[0], 0.1),
+        Constraint("gear_ratio", "", False, gear_ratios[1], 0.1),
+        *([Constraint("speed_ripple", "", False, ripple, 0.05)] if ripple is not None else []),
+    )
+
+
+def length_values(design: Design, lengths: FloatArray, polygon: ComplexArray) -> FloatArray:
+    """Values of length_constraints for a batch of designs with these lengths, shape (n, 9); returns shape (n, 8)."""
+    linkage = design.linkage
+    others = np.stack([np.abs(linkage.pivot_to_crank), linkage.coupler, linkage.rocker])
+    columns = (
+        linkage.crank,
+        linkage.rocker,
+        linkage.foot,
+        np.minimum(lengths - _BOUNDS[0], _BOUNDS[1] - lengths).min(axis=1),
+        others.min(axis=0) - linkage.crank,
+        grashof_margin(design),
+    )
+    pivots = (np.asarray(linkage.ground), np.asarray(linkage.crank_centre))
+    return np.column_stack(
+        [np.ravel(column) for column in columns] + [depth_inside(polygon, pivot.ravel()) for pivot in pivots]
+    )
+
+
+def motion_values(
+    turn: Cycles, reference: ReferenceTricycle, speeds: PerJoint[FloatArray], gear_ratio: FloatArray
+) -> FloatArray:
+    """Values of the constraints on the turn but the ripple, in their order, shape (n, 11)."""
+    ranges = [np.degrees(side[joint]) for joint in JOINTS for side in (turn.low, turn.high)]
+    rates = (speeds[joint] * gear_ratio for joint in JOINTS)
+    overlaps = (_overlap(joint, turn, reference) for joint in JOINTS)
+    return np.column_stack([turn.turning.reach, *ranges, *rates, *overlaps, gear_ratio, gear_ratio])
+
+
+def _overlap(joint: str, turn: Cycles, reference: ReferenceTricycle) -> FloatArray:
+    """How far a joint comes into the range of the moments, from whichever side, deg, shape (n,); not above 0: never."""
+    low, high = turn.low[joint], turn.high[joint]
+    (bottom, top), middle = reference.ranges[joint], (low + high) / 2
+    shift = reference.around(joint, middle) - middle
+    overlap = np.degrees(np.minimum(high + shift - bottom, top - low - shift))
+    # the angle beside a dead centre is too sharp for the parabola that found its extreme
+    return np.where(turn.outside[1][joint], np.minimum(overlap, 0.0), overlap)
+
+
+def margins(constraints: tuple[Constraint, ...], values: FloatArray) -> FloatArray:
+    """How far inside their limits the values are, shape (n, constraints)."""
+    return np.column_stack([c.margin(values[:, column]) for column, c in enumerate(constraints)])
