@@ -5,7 +5,6 @@ Needs the extra "benchmark". Prints a table and writes results/benchmark.json.
 
 import time
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -35,7 +34,7 @@ def batch(design: Design, count: int) -> Design:
     ones = np.ones((count, 1))
     names = ("ground", "crank", "foot", "pivot_to_crank", "pedal_arm", "coupler", "rocker", "coupler_angle")
     numbers = {name: getattr(design.linkage, name) * ones for name in names}
-    return replace(design, linkage=replace(design.linkage, **numbers))
+    return design.with_linkage(**numbers)
 
 
 def four_bar(angle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -140,7 +140,7 @@ def evaluations() -> dict[str, np.ndarray]:
 
 def simulated() -> dict[str, np.ndarray]:
     """Simulated turns of D1 with riders of different mass per second."""
-    riders = [replace(load_design("d1"), rider=replace(load_design("d1").rider, mass=60.0 + i)) for i in range(TURNS)]
+    riders = [load_design("d1").with_rider(mass=60.0 + i) for i in range(TURNS)]
     steps = steps_per_turn(riders[0], riders[0].linkage.cadence)
     models = [build_mjcf(design, drawn=False).compile() for design in riders]
     loop = compiled_loop(torque_map(MOMENTS), joint_drives(ONE_LEG))

@@ -58,7 +58,7 @@ def fitted_speeds(design: Design) -> PerJoint[np.ndarray]:
     """Mean absolute joint speeds of these riders, each in his best seat, deg/s."""
     thigh, shank = riders()
     seats, _ = best_seats(design, thigh, shank, TABLE)
-    batch = design.changed({}, {"thigh": thigh[:, None], "shank": shank[:, None]})
+    batch = design.with_rider(thigh=thigh[:, None], shank=shank[:, None])
     turn = cycles(Seats(*(each[:, None] for each in seats)).moved(batch), TABLE)
     return turn.travel.map(lambda travel: np.degrees(travel) * design.linkage.cadence / (2 * np.pi))
 

@@ -80,10 +80,10 @@ def _seated(rng: np.random.Generator, design: Design, margin: float, direction: 
     folded = float(np.interp(nearest + margin, low[: inside[0] + 1], distance[: inside[0] + 1]))
     seat = float(rng.choice([float(rng.choice(distance[inside])), stretched, folded])) * direction
     ground = complex(design.linkage.ground - path.mean() + seat)
-    design = replace(design, linkage=replace(design.linkage, ground=ground))
+    design = design.with_linkage(ground=ground)
     thigh = np.angle(kinematics.positions(design, FINE)["knee"]).mean()
     seat_angle = float(thigh - rng.uniform(*PAPER_TRICYCLE.ranges.hip))
-    design = replace(design, linkage=replace(design.linkage, seat_angle=seat_angle))
+    design = design.with_linkage(seat_angle=seat_angle)
     try:
         turning_in_range(design, PAPER_TRICYCLE)
     except InputError:

@@ -56,25 +56,18 @@ def test_the_size_of_the_whole_does_not_change_the_crank_moment(
 ) -> None:
     linkage, rider = design.linkage, design.rider
     lengths = ("ground", "crank", "foot", "pivot_to_crank", "pedal_arm", "coupler", "rocker")
-    larger = replace(
-        design,
-        linkage=replace(linkage, **{name: factor * getattr(linkage, name) for name in lengths}),
-        rider=replace(rider, thigh=factor * rider.thigh, shank=factor * rider.shank),
-    )
+    larger = design.with_linkage(**{name: factor * getattr(linkage, name) for name in lengths})
+    larger = larger.with_rider(thigh=factor * rider.thigh, shank=factor * rider.shank)
     assert _moment(larger, moments) == pytest.approx(_moment(design, moments), rel=1e-8, abs=1e-8)
 
 
 @given(designs(), periodic_moments(), between(-1, 1))
 def test_turning_the_tricycle_changes_nothing(design: Design, moments: JointMoments, angle: float) -> None:
     linkage, turn = design.linkage, complex(math.cos(angle), math.sin(angle))
-    turned = replace(
-        design,
-        linkage=replace(
-            linkage,
-            ground=turn * linkage.ground,
-            pivot_to_crank=turn * linkage.pivot_to_crank,
-            seat_angle=linkage.seat_angle + angle,
-        ),
+    turned = design.with_linkage(
+        ground=turn * linkage.ground,
+        pivot_to_crank=turn * linkage.pivot_to_crank,
+        seat_angle=linkage.seat_angle + angle,
     )
     assert _moment(turned, moments, ANGLES + angle) == pytest.approx(_moment(design, moments), rel=1e-8, abs=1e-8)
 
@@ -125,7 +118,7 @@ def test_the_crank_moment_is_linear_in_the_joint_moments(
 @given(designs(), periodic_moments(), between(0.1, 5))
 def test_power_is_linear_in_the_gear_ratio(design: Design, moments: JointMoments, factor: float) -> None:
     linkage = design.linkage
-    faster = replace(design, linkage=replace(linkage, gear_ratio=factor * linkage.gear_ratio))
+    faster = design.with_linkage(gear_ratio=factor * linkage.gear_ratio)
     slow, fast = (quasi_static(each, moments, points=90) for each in (design, faster))
     assert fast.power_mean == pytest.approx(factor * slow.power_mean, rel=1e-12)
     assert fast.work_per_turn == pytest.approx(slow.work_per_turn, rel=1e-12)
@@ -155,7 +148,7 @@ def test_a_design_file_reads_back_to_the_last_bit(tmp_path_factory: pytest.TempP
     path = tmp_path_factory.mktemp("design") / "random.toml"
     # gamma is written for a CDT only: nothing else has it
     kept = design.linkage.coupler_angle if design.linkage.kind == "cdt" else Linkage.coupler_angle
-    design = replace(design, linkage=replace(design.linkage, coupler_angle=kept))
+    design = design.with_linkage(coupler_angle=kept)
     path.write_text(design_toml(design, "a random linkage"))
     again = load_design(path)
     assert design_toml(again) == design_toml(design)

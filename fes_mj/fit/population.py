@@ -125,7 +125,7 @@ def study_population(
 
 def _unmoved(design: Design, thigh: FloatArray, shank: FloatArray, table: WorkTable) -> FloatArray:
     """Power of riders with the seat as drawn, W, NaN for who cannot ride, shape (riders,)."""
-    scores = score(design.changed({}, {"thigh": thigh[:, None], "shank": shank[:, None]}), table)
+    scores = score(design.with_rider(thigh=thigh[:, None], shank=shank[:, None]), table)
     return np.where(scores.fits, scores.power, np.nan)
 
 

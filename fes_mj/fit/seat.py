@@ -45,7 +45,7 @@ class Seats(NamedTuple):
     def moved(self, design: Design) -> Design:
         """The design with its seat moved so, a batch for arrays of shape (seats, 1)."""
         angle = design.linkage.seat_angle + self.recline
-        return design.changed({"ground": design.linkage.ground + self.shift, "seat_angle": angle}, {})
+        return design.with_linkage(ground=design.linkage.ground + self.shift, seat_angle=angle)
 
     @property
     def shift(self) -> Any:
@@ -138,7 +138,7 @@ def _best(design: Design, legs: FloatArray, seats: FloatArray, table: WorkTable)
         rows = slice(start, start + size)
         thigh, shank = np.repeat(legs[rows], count, axis=0).T[..., None]
         tried = Seats(*seats[rows].reshape(-1, 3).T)
-        batch = Seats(*(each[:, None] for each in tried)).moved(design.changed({}, {"thigh": thigh, "shank": shank}))
+        batch = Seats(*(each[:, None] for each in tried)).moved(design.with_rider(thigh=thigh, shank=shank))
         scores = score(batch, table)
         merit = (scores.merit - WAY_COST * tried.way).reshape(-1, count)
         top = np.argmax(merit, axis=1) + count * np.arange(len(merit))
@@ -186,7 +186,7 @@ class Fit:
             found.append(f"a seat that moves farther: {seat_text(other.seat)}")
         for part in _CRANKS:
             crank = part * self.drawn.linkage.crank
-            if fit(self.drawn.changed({"crank": crank}, {}), self.rider, self.moments, self.limits).fits:
+            if fit(self.drawn.with_linkage(crank=crank), self.rider, self.moments, self.limits).fits:
                 return [*found, f"a crank (R2) of {100 * crank:.1f} instead of {100 * crank / part:.1f} cm"]
         return found
 

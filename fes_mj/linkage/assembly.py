@@ -5,7 +5,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from fes_mj.common.arrays import ComplexArray, FloatArray
-from fes_mj.linkage.batch import batch_size, take
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.kinematics import FULL_TURN, Motion, Points, joint_angles, positions, solve
 
@@ -64,7 +63,7 @@ def _of_circle(centre: Any, radius: Any) -> tuple[FloatArray, FloatArray]:
 
 def _of_pedal(design: Design, pedal: ComplexArray) -> tuple[FloatArray, FloatArray]:
     """The same for hip and pedal; pedal: at SCAN, shape (designs, angles)."""
-    distance = np.broadcast_to(np.abs(pedal), (batch_size(design), len(SCAN)))
+    distance = np.broadcast_to(np.abs(pedal), (design.size, len(SCAN)))
     ends = np.stack([distance.argmin(axis=1), distance.argmax(axis=1)])
     spans, angles = np.take_along_axis(distance, ends.T, axis=1).T, SCAN[ends]
     shortest, longest = span_limits(design, ("thigh", "shank"))
@@ -75,8 +74,8 @@ def _of_pedal(design: Design, pedal: ComplexArray) -> tuple[FloatArray, FloatArr
         peak &= (margins[end][:, None] < NEAR) & (height > sign * spans[end][:, None] - NEAR)
         rows, columns = np.nonzero(peak)
         if rows.size:
-            exact_angle = pedal_extreme(take(design, rows), SCAN[columns], sign)
-            exact = np.abs(positions(take(design, rows), exact_angle)["pedal"])[:, 0]
+            exact_angle = pedal_extreme(design.taken(rows), SCAN[columns], sign)
+            exact = np.abs(positions(design.taken(rows), exact_angle)["pedal"])[:, 0]
             for row, value, angle in zip(rows, exact, exact_angle[:, 0], strict=True):
                 if not sign * value < sign * spans[end, row]:
                     spans[end, row], angles[end, row] = value, angle

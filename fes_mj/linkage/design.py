@@ -6,11 +6,14 @@ Robotics 2022, 11(1), 26; outside this module and the design files, words are us
 """
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Collection
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
+
+from fes_mj.common.errors import InputError
 
 WHEEL_DIAMETER = 0.66  # m, paper Section 3
 TRICYCLE_SPEED = 5.71 / 3.6  # m/s, paper Section 3
@@ -49,6 +52,7 @@ class Architecture:
 
 
 BRANCHES = {"left": 1, "right": -1}
+SEXES = ("male", "female")
 _FOUR_BAR = ("thigh", "shank", "crank")
 _SIX_BAR = (*_FOUR_BAR, "rocker", "coupler")
 ARCHITECTURES = {
@@ -58,11 +62,18 @@ ARCHITECTURES = {
 }
 
 
+def _require_one_of(name: str, value: str, allowed: Collection[str]) -> None:
+    """Raise InputError for a word that is none of those allowed."""
+    if value not in allowed:
+        raise InputError(f"{name} is {value!r}; it must be one of {', '.join(allowed)}")
+
+
 @dataclass(frozen=True)
 class Linkage:
     """Dimensions of one linkage, lengths in m and angles in rad; a TRT has no rocker, coupler or pedal arm.
 
-    In a batch of designs each number is an array of shape (designs, 1).
+    In a batch of designs any number is an array of shape (designs, 1). Raises InputError for a kind or branch that is
+    none.
     """
 
     kind: str  # a key of ARCHITECTURES
@@ -77,6 +88,10 @@ class Linkage:
     gear_ratio: float = 1.31  # lambda: crank turns per wheel turn
     seat_angle: float = math.pi / 6  # theta_b
     branch: str = "left"  # side of pivot -> crank pin on which the rocker joint lies, one of BRANCHES
+
+    def __post_init__(self) -> None:
+        _require_one_of("kind", self.kind, ARCHITECTURES)
+        _require_one_of("branch", self.branch, BRANCHES)
 
     @property
     def architecture(self) -> Architecture:
@@ -104,7 +119,7 @@ class Linkage:
 
 @dataclass(frozen=True)
 class Rider:
-    """Leg lengths in m, body mass in kg, and whose segment parameters apply (a key of segments.DE_LEVA)."""
+    """Leg lengths in m, body mass in kg, and whose segment parameters apply (one of SEXES, or InputError)."""
 
     thigh: float = 0.52  # R4
     shank: float = 0.52  # R5: knee to the level of the pedal axle, at right angles to the sole (docs/errata.md, E18)
@@ -112,24 +127,67 @@ class Rider:
     sex: str = "male"
     leg_mass_factor: float = 1.0  # on the masses of thigh, shank and foot; see data/riders.toml
 
+    def __post_init__(self) -> None:
+        _require_one_of("sex", self.sex, SEXES)
+
 
 @dataclass(frozen=True)
 class Design:
-    """A named linkage together with the rider who sits on it."""
+    """A named linkage together with the rider who sits on it; or a batch, in which any number may be an array.
+
+    The arrays of a batch have the shape (designs, 1), as many designs in each.
+    """
 
     name: str
     linkage: Linkage
     rider: Rider = Rider()
 
-    def changed(self, linkage: Mapping[str, Any], rider: Mapping[str, Any]) -> "Design":
-        """The design with these attributes of its linkage and its rider."""
-        return replace(self, linkage=replace(self.linkage, **linkage), rider=replace(self.rider, **rider))
+    def with_linkage(self, **numbers: Any) -> "Design":
+        """The design with these attributes of its linkage changed, lengths in m, angles in rad."""
+        return replace(self, linkage=replace(self.linkage, **numbers))
+
+    def with_rider(self, **numbers: Any) -> "Design":
+        """The design with these attributes of its rider changed, lengths in m, the mass in kg."""
+        return replace(self, rider=replace(self.rider, **numbers))
+
+    def crank_speed(self, cadence: float | None = None) -> float:
+        """Crank speed of a run, rad/s: `cadence`, or if it is None that of Eq. 16.
+
+        Raises InputError unless it is finite and above zero.
+        """
+        if cadence is None:
+            return self.linkage.cadence
+        if not 0 < cadence < math.inf:
+            raise InputError(
+                f"{self.name}: cadence is {cadence:g}; it must be a crank speed above 0 in rad/s, or None for the "
+                "design's own"
+            )
+        return cadence
 
     @property
     def is_batch(self) -> bool:
-        """Whether any number of the linkage or the rider is an array, of shape (designs, 1)."""
-        numbers = (*vars(self.linkage).values(), *vars(self.rider).values())
-        return any(isinstance(number, np.ndarray) for number in numbers)
+        """Whether any number of the linkage or the rider is an array."""
+        return bool(_arrays(self.linkage) or _arrays(self.rider))
+
+    @property
+    def size(self) -> int:
+        """Number of designs in a batch; 1 for a single design."""
+        arrays = (*_arrays(self.linkage).values(), *_arrays(self.rider).values())
+        return max((len(array) for array in arrays), default=1)
+
+    def taken(self, rows: Any) -> "Design":
+        """The designs of a batch at `rows` (an index array, a mask or a slice), as a batch; a single one is itself."""
+        return self._with_arrays(lambda array: array[rows])
+
+    def single(self, row: int) -> "Design":
+        """One design of a batch, with plain numbers."""
+        return self._with_arrays(lambda array: array[row, 0].item())
+
+    def _with_arrays(self, change: Callable[[NDArray[Any]], Any]) -> "Design":
+        linkage, rider = (
+            {name: change(array) for name, array in _arrays(part).items()} for part in (self.linkage, self.rider)
+        )
+        return self.with_linkage(**linkage).with_rider(**rider)
 
     @property
     def knee_to_pedal(self) -> Any:
@@ -152,3 +210,9 @@ class Design:
             "coupler": self.linkage.coupler,
         }
         return {body: lengths[body] for body in self.linkage.architecture.bodies}
+
+
+def _arrays(part: Linkage | Rider) -> dict[str, NDArray[Any]]:
+    """The numbers of a linkage or a rider that a batch has by the design."""
+    numbers = {field.name: getattr(part, field.name) for field in fields(part)}
+    return {name: number for name, number in numbers.items() if isinstance(number, np.ndarray)}

@@ -1,6 +1,7 @@
 """Design files: TOML in metres and degrees, read and written; the paper's designs are a folder of them."""
 
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -10,9 +11,8 @@ from fes_mj.common.arrays import FloatArray
 from fes_mj.common.errors import InputError
 from fes_mj.common.reading import DATA, Section, is_number, read_toml
 from fes_mj.common.text import printable
-from fes_mj.linkage.design import ARCHITECTURES, BRANCHES, Design, Linkage, Rider
+from fes_mj.linkage.design import ARCHITECTURES, BRANCHES, SEXES, Design, Linkage, Rider
 from fes_mj.linkage.riders import PRESETS, preset
-from fes_mj.linkage.segments import DE_LEVA
 from fes_mj.linkage.variables import LONGEST, VARIABLES, Variable
 
 DESIGNS = ("trt", "r1", "r2", "d1", "d2")
@@ -68,13 +68,17 @@ def _rider(content: Section, kind: str) -> Rider:
     """Of a table [rider] or, by `rider = "NAME"` above all tables, a preset."""
     named = content.content.get("rider", {})
     if isinstance(named, dict):
-        rider = content.section("rider")
-        sex = rider.choice("sex", DE_LEVA, Rider.sex)
-        return Rider(sex=sex, **read_values(rider, kind, "sex"))
-    found = preset(named)
-    if not found:
+        return read_rider(content.section("rider"), kind, Rider())
+    rider = preset(named)
+    if not rider:
         content.refuse("rider", named, f"a table [rider], or the name of a rider: {PRESETS}")
-    return found
+    return rider
+
+
+def read_rider(section: Section, kind: str, default: Rider) -> Rider:
+    """The rider of a table, `default` where it says nothing."""
+    sex = section.choice("sex", SEXES, default.sex)
+    return replace(default, sex=sex, **read_values(section, kind, "sex", owner="rider"))
 
 
 def read_values(section: Section, kind: str, *others: str, owner: str = "", partial: bool = False) -> dict[str, Any]:

@@ -19,7 +19,6 @@ from fes_mj.linkage.assembly import (
     rocker_clearance,
     span_limits,
 )
-from fes_mj.linkage.batch import batch_size, take
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.kinematics import Motion, solve
 
@@ -72,8 +71,8 @@ def turning(design: Design) -> Turning:
     """
     if design.is_batch:
         raise InputError(
-            f"{design.name}: a batch of designs; fes_mj.statics.cycles turns all of them at once, and single(design, "
-            "row) takes one of them"
+            f"{design.name}: a batch of designs; fes_mj.statics.cycles.cycles turns them all at once, single(row) is "
+            "one of them"
         )
     return _established(design)
 
@@ -109,7 +108,7 @@ def leg_reach(design: Design, pedal: ComplexArray) -> FloatArray:
     distance = np.atleast_2d(np.abs(pedal))
     shortest, longest = span_limits(design, ("thigh", "shank"))
     reach = np.minimum(longest - distance.max(axis=1), distance.min(axis=1) - shortest)
-    return np.broadcast_to(reach, batch_size(design))  # where seat, mass or gear ratio are all that varies
+    return np.broadcast_to(reach, design.size)  # where seat, mass or gear ratio are all that varies
 
 
 def batch_turning(design: Design, reach: FloatArray, swing: FloatArray) -> BatchTurning:
@@ -123,7 +122,7 @@ def batch_turning(design: Design, reach: FloatArray, swing: FloatArray) -> Batch
     rows = np.flatnonzero(doubtful)
     if rows.size:  # so near to a dead centre the extremes between the angles count
         reach = np.array(reach)
-        reach[rows] = clearances(take(design, rows))[-1].margin
+        reach[rows] = clearances(design.taken(rows))[-1].margin
     too_far = Obstacle(f"the thigh swings through {np.degrees(LARGEST_SWING):.0f} deg or more", swing >= LARGEST_SWING)
     obstacles = (*by_rocker, *_shortfalls(("thigh", "shank"), reach), too_far)
     return BatchTurning(

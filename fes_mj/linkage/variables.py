@@ -111,7 +111,7 @@ def replaced(design: Design, values: Mapping[str, Any]) -> Design:
             vector = changed.get(variable.attribute, getattr(design.linkage, variable.attribute))
             value = value + 1j * np.imag(vector) if part == "real" else np.real(vector) + 1j * value
         changed[variable.attribute] = np.radians(value) if variable.unit == "deg" else value
-    return design.changed(**changes)
+    return design.with_linkage(**changes["linkage"]).with_rider(**changes["rider"])
 
 
 def lengths(design: Design) -> FloatArray:

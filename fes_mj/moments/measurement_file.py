@@ -12,10 +12,9 @@ from fes_mj.common.errors import AssemblyError, InputError
 from fes_mj.common.reading import Section, Table, read_toml
 from fes_mj.common.units import RPM
 from fes_mj.linkage import kinematics
-from fes_mj.linkage.design_file import read_values
+from fes_mj.linkage.design_file import read_rider, read_values
 from fes_mj.linkage.joints import JOINTS, PerJoint
 from fes_mj.linkage.loads import leg_moments
-from fes_mj.linkage.segments import DE_LEVA
 from fes_mj.linkage.turning import turning
 from fes_mj.linkage.variables import VARIABLES
 from fes_mj.moments.joint_moments import Misreading
@@ -232,9 +231,8 @@ def _measured_on(section: Section) -> ReferenceTricycle:
     """The tricycle, rider and cadence: the paper's, with what the file says of its own."""
     section.choice("kind", ("trt",), "trt")
     rider, paper = section.section("rider"), PAPER_TRICYCLE.design
-    sex = rider.choice("sex", DE_LEVA, paper.rider.sex)
     linkage = read_values(section, "trt", "kind", "cadence_rpm", "rider", owner="linkage", partial=True)
-    own = paper.changed(linkage, read_values(rider, "trt", "sex", owner="rider") | {"sex": sex})
+    own = replace(paper.with_linkage(**linkage), rider=read_rider(rider, "trt", paper.rider))
     allowed = VARIABLES["cadence_rpm"]
     cadence = own.linkage.cadence
     if "cadence_rpm" in section.content:

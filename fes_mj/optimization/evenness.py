@@ -6,7 +6,6 @@ import numpy as np
 
 from fes_mj.common.arrays import FloatArray
 from fes_mj.linkage.assembly import SCAN
-from fes_mj.linkage.batch import batch_size
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.inertia import CrankInertia, crank_inertia
 from fes_mj.linkage.kinematics import FULL_TURN, Motion, solve
@@ -44,7 +43,7 @@ class RippleLimit:
         motion = solve(design, SCAN)
         ride = Ride(design, self.moments, self.road, "fixed")
         masses = CrankInertia(*map(all_legs, crank_inertia(motion)))
-        return np.broadcast_to(even_ripple(ride, _both_legs(motion, self.moments), masses), batch_size(design))
+        return np.broadcast_to(even_ripple(ride, _both_legs(motion, self.moments), masses), design.size)
 
 
 def _both_legs(motion: Motion, moments: JointMoments) -> FloatArray:

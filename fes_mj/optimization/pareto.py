@@ -8,7 +8,6 @@ import numpy as np
 from fes_mj.common.arrays import FloatArray, IntArray
 from fes_mj.common.errors import InputError, require_extra
 from fes_mj.common.writing import csv_text
-from fes_mj.linkage.batch import take
 from fes_mj.linkage.variables import LENGTHS
 from fes_mj.moments.joint_moments import GROUPS, JointMoments
 from fes_mj.optimization.evenness import fluctuation
@@ -132,5 +131,5 @@ def _objectives(
         columns.append(np.zeros(len(evaluation.x)))
         feasible = evaluation.feasible
         if feasible.any():
-            columns[-1][feasible] = fluctuation(take(problem.batch(evaluation.x), feasible), moments[0])
+            columns[-1][feasible] = fluctuation(problem.batch(evaluation.x).taken(feasible), moments[0])
     return np.column_stack(columns)

@@ -14,7 +14,6 @@ from fes_mj.common.arrays import FloatArray
 from fes_mj.fit.population import PEOPLE
 from fes_mj.fit.seat import SEAT_LIMITS, Seats
 from fes_mj.linkage.assembly import SCAN
-from fes_mj.linkage.batch import batch_size, take
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.kinematics import positions
 from fes_mj.linkage.riders import populations
@@ -66,8 +65,8 @@ class People:
         seats = np.concatenate([np.zeros((len(moves), 1, 3)), np.clip(moved, low, high)], axis=1).reshape(-1, 3)
         legs = np.vstack([[design.rider.thigh, design.rider.shank], self.others])
         thigh, shank = np.tile(legs, (len(moves), 1)).T[..., None]
-        each = take(design, np.repeat(np.arange(batch_size(design)), self.count))
-        return Seats(*seats.T[..., None]).moved(each.changed({}, {"thigh": thigh, "shank": shank}))
+        each = design.taken(np.repeat(np.arange(design.size), self.count))
+        return Seats(*seats.T[..., None]).moved(each.with_rider(thigh=thigh, shank=shank))
 
     def power(self, power: FloatArray) -> FloatArray:
         """The statistic, shape (n, sets), of the powers of all riders, design by design, shape (n * count, sets), W."""

@@ -10,7 +10,6 @@ import numpy as np
 from fes_mj.common.arrays import BoolArray, FloatArray
 from fes_mj.common.errors import InputError
 from fes_mj.common.units import RPM
-from fes_mj.linkage.batch import single, take
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.design_file import load_design
 from fes_mj.linkage.joints import JOINTS, PerJoint
@@ -131,7 +130,7 @@ class Problem:
     def riders(self, x: FloatArray) -> list[Design]:
         """The designs of one design's riders, each with his seat; x: shape (variables,)."""
         batch = self.people.seated(self.batch(x[None]), x[None, LENGTH_COUNT:-1])
-        return [single(batch, row) for row in range(self.people.count)]
+        return [batch.single(row) for row in range(self.people.count)]
 
     def variables(self, design: Design) -> FloatArray:
         """The variables x = [R1, R2, R6, R7, R8, R9, R10, lambda] of a design, m and 1; before lambda no seat's moves.
@@ -166,7 +165,7 @@ class Problem:
         chosen = free.shape == x.shape
         gear_ratio = np.full(len(x), self.gear_ratios[1]) if chosen else x[:, -1].copy()
         if sound.any():
-            ridden = self.people.seated(take(design, sound), free[sound, LENGTH_COUNT:])
+            ridden = self.people.seated(design.taken(sound), free[sound, LENGTH_COUNT:])
             turn = cycles(ridden, self.table, self.points)
             # cadence and joint speeds are those at gear ratio 1
             cadence, riders = self._cadence_of_one, self.people.count
@@ -219,8 +218,8 @@ class Problem:
         ripple = np.full(len(values), np.nan)
         within = np.all(margins(self.motion[: values.shape[1]], values) >= 0, axis=1)
         if within.any():
-            geared = design.changed({"gear_ratio": gear_ratio[:, None]}, {})
-            ripple[within] = self.ripple.ripple(take(geared, within))
+            geared = design.with_linkage(gear_ratio=gear_ratio[:, None])
+            ripple[within] = self.ripple.ripple(geared.taken(within))
         return [ripple]
 
     def _worst(self, values: FloatArray) -> FloatArray:

@@ -1,7 +1,7 @@
 """The evidence on the joint moments: data rows, each a linear functional of the two moment curves."""
 
 import math
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from pathlib import Path
 
 import numpy as np
@@ -111,4 +111,4 @@ def functional(row: Evidence) -> tuple[FloatArray, float, float]:
 def own_leg_motion(leg: float) -> kinematics.Motion:
     """A turn of the TRT with a thigh and a shank of `leg` m; its moments are read at the crank angle itself."""
     reference = PAPER_TRICYCLE.design
-    return kinematics.solve(replace(reference, rider=replace(reference.rider, thigh=leg, shank=leg)), _ANGLES)
+    return kinematics.solve(reference.with_rider(thigh=leg, shank=leg), _ANGLES)

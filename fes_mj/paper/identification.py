@@ -5,7 +5,7 @@ lengths with the eight range limits of Table 1 and the Grashof condition as cons
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.optimize import least_squares, minimize
@@ -126,7 +126,7 @@ def inside_rounding(
 
 def _candidates(printed: Design, seat_angle: float, coupler_angle: float) -> Callable[[FloatArray], Design]:
     """Shift in half-widths of the rounding, shape (9,) -> the design with these lengths and angles."""
-    base = replace(printed, linkage=replace(printed.linkage, seat_angle=seat_angle, coupler_angle=coupler_angle))
+    base = printed.with_linkage(seat_angle=seat_angle, coupler_angle=coupler_angle)
     return lambda shift: with_lengths(base, lengths(base) + LENGTH_ROUNDING * shift)
 
 

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -63,7 +62,7 @@ def _outcomes(reading: Reading) -> Iterator[tuple[str, str]]:
         printed, target = load_design(name, "printed"), table1()[name]
         if reading.mirrored:
             ground = printed.linkage.ground.conjugate()
-            printed = replace(printed, linkage=replace(printed.linkage, ground=ground))
+            printed = printed.with_linkage(ground=ground)
         result = identify(printed, target, reading.seat_angle, reading.coupler_angle)
         if result.feasible:
             yield name, f"fits, cost {result.cost:.2f}"

@@ -127,7 +127,7 @@ def simulate(
     InputError for a linkage that does not turn and for joints that never enter the moments' range, UnstableError if the
     integration breaks down.
     """
-    cadence, torque = cadence or design.linkage.cadence, torque or torque_map(moments)
+    cadence, torque = design.crank_speed(cadence), torque or torque_map(moments)
     for leg in LEGS[legs]:
         turning_in_range(design, torque.of(leg.prefix).reference)
     spec = build_mjcf(

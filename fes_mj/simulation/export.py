@@ -98,7 +98,7 @@ def sidecar_text(design: Design, moments: JointMoments, cadence: float | None = 
     Angles and moments of the driven joints, named as in the model, then the moment of all legs on the crank: with
     masses and weight, as the model shows it, and without (quasi-static).
     """
-    cadence, torque = cadence or design.linkage.cadence, torque_map(moments)
+    cadence, torque = design.crank_speed(cadence), torque_map(moments)
     angle = np.linspace(0, 2 * np.pi, SIDECAR_ROWS, endpoint=False)
     columns = {"crank_angle_deg": np.degrees(angle), FROM_TOP: turning(design).degrees_from_top(angle)}
     massive, massless = np.zeros((2, SIDECAR_ROWS))

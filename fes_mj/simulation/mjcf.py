@@ -72,7 +72,7 @@ def build_mjcf(
     Raises AssemblyError if the linkage does not close, InputError if MuJoCo refuses it.
     """
     turning(design)
-    cadence, held = design.linkage.cadence if cadence is None else cadence, driven and held
+    cadence, held = design.crank_speed(cadence), driven and held
     spec = mujoco.MjSpec()
     spec.modelname = design.name
     spec.comment = f"{design.name}: {design.linkage.architecture.title}, {cadence / RPM:.2f} rpm"

@@ -17,7 +17,6 @@ from scipy.sparse import csr_array
 from fes_mj.common.arrays import BoolArray, FloatArray, IntArray
 from fes_mj.common.errors import InputError
 from fes_mj.linkage.assembly import SCAN
-from fes_mj.linkage.batch import batch_size, take
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.joints import PerJoint
 from fes_mj.linkage.kinematics import joint_angles, positions
@@ -150,9 +149,7 @@ def cycles(design: Design, table: WorkTable, points: int = TURN_POINTS) -> Cycle
     """
     crank_angle = np.linspace(0, 2 * np.pi, points, endpoint=False)
     size = max(1, BLOCK_POSITIONS // points)
-    parts = [
-        _turn(take(design, slice(start, start + size)), crank_angle) for start in range(0, batch_size(design), size)
-    ]
+    parts = [_turn(design.taken(slice(start, start + size)), crank_angle) for start in range(0, design.size, size)]
     reach, swing = (np.concatenate([part[i] for part in parts]) for i in (0, 1))
     turning = batch_turning(design, reach, swing)
     turns = turning.turns

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
@@ -166,7 +166,7 @@ def _likely_cause(design: Design, reference: ReferenceTricycle) -> str:
     likely = []
     for cause, changes in _causes(design):
         with suppress(AssemblyError):
-            turn = turning(replace(design, linkage=replace(design.linkage, **changes)))
+            turn = turning(design.with_linkage(**changes))
             likely.append((_worst(turn, reference), cause))
     worst, cause = min(likely, key=lambda pair: pair[0], default=(1.0, ""))
     return f". Likely cause: {cause}" if worst < 1 else ""

@@ -41,7 +41,7 @@ class JointForces:
 
     def _with_leg_mass(self, factor: float) -> dict[str, ComplexArray]:
         static = self.static
-        motion = replace(static.motion, design=static.design.changed({}, {"leg_mass_factor": factor}))
+        motion = replace(static.motion, design=static.design.with_rider(leg_mass_factor=factor))
         return equilibrium(motion, static.joint_moment, body_loads(motion, static.cadence))[1]
 
     @property

@@ -150,13 +150,14 @@ def quasi_static(
     """Solve one turn of the massless, gravity-free model.
 
     cadence: crank speed in rad/s, by default the design's own (Eq. 16). points: crank angles from 0, uniform.
-    Raises AssemblyError if the linkage does not close over the whole turn.
+    Raises InputError for a batch of designs, a cadence that is none, or joints that never enter the moments' range,
+    AssemblyError if the linkage does not turn.
     """
     turning_in_range(design, moments.measured_on)
     motion = kinematics.solve(design, np.linspace(0, 2 * np.pi, points, endpoint=False))
-    torque, cadence = torque_map(moments), cadence or design.linkage.cadence
-    joint_moment = torque.along(motion, cadence)
-    return QuasiStatic(motion, torque, cadence, joint_moment, *equilibrium(motion, joint_moment))
+    torque, speed = torque_map(moments), design.crank_speed(cadence)
+    joint_moment = torque.along(motion, speed)
+    return QuasiStatic(motion, torque, speed, joint_moment, *equilibrium(motion, joint_moment))
 
 
 def difference_sd(one: QuasiStatic, other: QuasiStatic, factor: float = 1.0) -> float | None:

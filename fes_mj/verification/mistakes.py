@@ -171,7 +171,7 @@ def without_couples(steps: Pipeline, *arguments: Any, **options: Any) -> Any:
 
 def in_linkage(**changes: Callable[[float], float]) -> Callable[[Design], Design]:
     def edit(design: Design) -> Design:
-        return design.changed({name: change(getattr(design.linkage, name)) for name, change in changes.items()}, {})
+        return design.with_linkage(**{name: change(getattr(design.linkage, name)) for name, change in changes.items()})
 
     return edit
 

@@ -27,7 +27,7 @@ def static(name: str, moments: JointMoments) -> QuasiStatic:
 def outside() -> QuasiStatic:
     """A TRT whose hip leaves the range of the moments."""
     trt = fes_mj.load_design("trt")
-    return quasi_static(trt.changed({"seat_angle": np.radians(55)}, {}), fes_mj.load_moments())
+    return quasi_static(trt.with_linkage(seat_angle=np.radians(55)), fes_mj.load_moments())
 
 
 def test_moments_and_extrapolation_are_the_known_standard_deviation(

@@ -124,7 +124,7 @@ def test_blocks_do_not_matter(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize("factor", [0.5, 1.0, 1.7])
 def test_leg_masses_do_not_change_the_mean_power(design: fes_mj.Design, moments: JointMoments, factor: float) -> None:
     """Exactly: the inverse dynamics with masses over a turn against the statics without."""
-    result = quasi_static(design.changed({}, {"leg_mass_factor": factor}), moments)
+    result = quasi_static(design.with_rider(leg_mass_factor=factor), moments)
     massive = crank_moment(result.motion, result.torque, result.cadence)
     assert np.ptp(massive - result.crank_moment) > 1  # N m: they do change the power at every instant
     assert massive.mean() == pytest.approx(result.crank_moment.mean(), abs=1e-9)

@@ -100,5 +100,5 @@ def test_another_design_is_known_to_the_last_digit_of_its_lengths(tmp_path: Path
             away = values - component(design, name)
             assert 0.99 * half < np.abs(away).max() <= half
             assert away.std() == pytest.approx(half / np.sqrt(3), rel=0.06)
-    changed = fes_mj.load_design("d1").changed({"crank": 0.1612345}, {})  # no longer the identified one
+    changed = fes_mj.load_design("d1").with_linkage(crank=0.1612345)  # no longer the identified one
     assert np.abs(of(changed).dimensions["R9"] - component(changed, "R9")).max() <= 0.5e-7

@@ -41,7 +41,7 @@ def test_another_search_finds_no_better_seat(name: str, who: str, percentile: fl
     def loss(x: np.ndarray) -> np.ndarray:
         tried = Seats(*x[..., None])
         legs = {"thigh": np.full((x.shape[1], 1), rider.thigh), "shank": np.full((x.shape[1], 1), rider.shank)}
-        merit = score(tried.moved(design.changed({}, legs)), table).merit
+        merit = score(tried.moved(design.with_rider(**legs)), table).merit
         return np.asarray(WAY_COST * np.ravel(tried.way) - merit)
 
     other = differential_evolution(

@@ -76,7 +76,7 @@ def test_legs_after_injury_weigh_less_and_nothing_else_does() -> None:
     rider, factor = preset("ansur-man-p50-sci"), leg_mass_after_injury()[0]
     assert rider
     design = load_design("r1")
-    light, full = (inertias(design.changed({}, {"mass": 80.0, "leg_mass_factor": f})) for f in (factor, 1.0))
+    light, full = (inertias(design.with_rider(mass=80.0, leg_mass_factor=f)) for f in (factor, 1.0))
     for body, inertia in full.items():
         leg = body in ("thigh", "shank")
         assert light[body].mass == pytest.approx((factor if leg else 1.0) * inertia.mass)

@@ -54,8 +54,8 @@ def test_it_is_established_once_for_equal_designs_and_never_for_a_batch() -> Non
     d1 = load_design("d1")
     assert turning(replace(d1, linkage=replace(d1.linkage))) is turning(d1)
     assert turning(replace(d1, name="other")) is not turning(d1)
-    with pytest.raises(InputError, match=r"d1: a batch of designs; fes_mj\.statics\.cycles"):
-        turning(replace(d1, rider=replace(d1.rider, mass=np.array([[60.0], [90.0]]))))
+    with pytest.raises(InputError, match=r"d1: a batch of designs; fes_mj\.statics\.cycles\.cycles"):
+        turning(d1.with_rider(mass=np.array([[60.0], [90.0]])))
 
 
 def test_a_batch_turns_where_its_designs_do() -> None:
@@ -65,11 +65,8 @@ def test_a_batch_turns_where_its_designs_do() -> None:
         design = load_design(name)
         reach = clearances(design)[-1].margin[0]
         shorter = reach - np.concatenate([random.uniform(-0.01, 0.01, 40), LEAST_CLEARANCE + 1e-6 * np.arange(-3, 4)])
-        batch = replace(design, rider=replace(design.rider, thigh=design.rider.thigh - shorter[:, None]))
-        turns = [
-            _turns(replace(design, rider=replace(design.rider, thigh=float(thigh))))
-            for thigh in batch.rider.thigh[:, 0]
-        ]
+        batch = design.with_rider(thigh=design.rider.thigh - shorter[:, None])
+        turns = [_turns(design.with_rider(thigh=float(thigh))) for thigh in batch.rider.thigh[:, 0]]
         assert cycles(batch, table).turns.tolist() == turns
         assert 10 < sum(turns) < 40
 

@@ -45,7 +45,7 @@ def test_design_files_keep_to_the_bounds_of_the_table(symbol: str, tmp_path_fact
     from fes_mj.linkage.design_file import design_toml
 
     variable, path = VARIABLES[symbol], tmp_path_factory.mktemp("design") / "mine.toml"
-    lines = design_toml(fes_mj.load_design("d1").changed({}, {"leg_mass_factor": 0.9})).splitlines()
+    lines = design_toml(fes_mj.load_design("d1").with_rider(leg_mass_factor=0.9)).splitlines()
     for value, accepted in (
         (variable.low, True),
         (variable.high, True),

@@ -1,7 +1,5 @@
 """The step is chosen beforehand: what is predicted is what is measured, and what cannot be run is refused."""
 
-from dataclasses import replace
-
 import mujoco
 import numpy as np
 import pytest
@@ -22,9 +20,9 @@ def test_the_step_follows_the_sharpness_of_the_motion() -> None:
     sharp = fes_mj.load_design("trt")  # the leg comes within a millimetre of stretching
     reach = sharp.rider.thigh + float(sharp.knee_to_pedal)
     far = abs(sharp.linkage.crank_centre) + sharp.linkage.crank
-    stretched = replace(sharp, linkage=replace(sharp.linkage, ground=sharp.linkage.ground * (reach - 1e-3) / far))
+    stretched = sharp.with_linkage(ground=sharp.linkage.ground * (reach - 1e-3) / far)
     assert steps_per_turn(stretched, 60 * RPM) == FEWEST_STEPS
-    closer = replace(sharp, linkage=replace(sharp.linkage, crank=reach - 1.1e-4 - abs(sharp.linkage.crank_centre)))
+    closer = sharp.with_linkage(crank=reach - 1.1e-4 - abs(sharp.linkage.crank_centre))
     assert steps_per_turn(closer, 60 * RPM) > 2 * FEWEST_STEPS
 
 
@@ -54,7 +52,7 @@ def test_the_near_edge_of_closing_agrees() -> None:
     """A leg that comes within 0.5 mm of stretching at 150 rpm, moments that follow a thorny curve."""
     trt, angle = fes_mj.load_design("trt"), np.radians(np.arange(0, 360, 0.25))
     crank = trt.rider.thigh + float(trt.knee_to_pedal) - abs(trt.linkage.crank_centre) - 5e-4
-    edge = replace(trt, linkage=replace(trt.linkage, crank=crank))
+    edge = trt.with_linkage(crank=crank)
     moments = fes_mj.JointMoments("thorny", angle, 12 * np.cos(angle) + 3 * np.sin(7 * angle), 6 * np.sin(angle))
     case = Case(edge, moments, cadence=150 * RPM)
     assert case.agrees, [check for check in case.checks if not check.ok]

@@ -1,7 +1,5 @@
 """The work of a turn from its reversals, against the quasi-static solver and an integral of its own."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -10,7 +8,7 @@ from fes_mj.common.errors import AssemblyError, InputError
 from fes_mj.linkage import kinematics
 from fes_mj.linkage.turning import turning
 from fes_mj.linkage.variables import component, lengths, replaced, with_lengths
-from fes_mj.statics.cycles import WorkTable, cycles, joint_speeds, reversals, take, uncertain_table
+from fes_mj.statics.cycles import WorkTable, cycles, joint_speeds, reversals, uncertain_table
 from fes_mj.statics.turn import QuasiStatic, quasi_static
 
 FINE = 36_000
@@ -22,16 +20,6 @@ def varied(design: fes_mj.Design, count: int, seed: int = 0) -> fes_mj.Design:
     random = np.random.default_rng(seed)
     drawn = lengths(design)[:, None, None] + random.uniform(-0.01, 0.01, (9, count, 1))
     return replaced(with_lengths(design, drawn), {"thigh": 0.52 + random.uniform(-LEGS, LEGS, (count, 1))})
-
-
-def single(batch: fes_mj.Design, row: int) -> fes_mj.Design:
-    """One design of a batch, in plain numbers."""
-    one = take(batch, [row])
-    parts = {
-        name: np.ravel(value)[0].item() for name, value in vars(one.linkage).items() if isinstance(value, np.ndarray)
-    }
-    rider = replace(one.rider, thigh=float(np.ravel(one.rider.thigh)[0]))
-    return replace(one, linkage=replace(one.linkage, **parts), rider=rider)
 
 
 def test_work_is_that_of_the_quasi_static_solver(design: fes_mj.Design, moments: fes_mj.JointMoments) -> None:
@@ -108,10 +96,7 @@ def test_random_designs_in_a_batch_fare_as_alone(name: str, moments: fes_mj.Join
 def test_a_seat_angle_a_turn_away_is_the_same_seat(name: str) -> None:
     design, table = fes_mj.load_design(name), uncertain_table(fes_mj.load_moments())
     seat = design.linkage.seat_angle - np.radians(8)
-    one, other = (
-        cycles(replace(design, linkage=replace(design.linkage, seat_angle=angle)), table)
-        for angle in (seat, seat - 2 * np.pi)
-    )
+    one, other = (cycles(design.with_linkage(seat_angle=angle), table) for angle in (seat, seat - 2 * np.pi))
     assert one.outside[0][0] > 0
     assert one.outside[0] == pytest.approx(other.outside[0], abs=1e-9)
     assert one.outside_sd == pytest.approx(other.outside_sd, rel=1e-9)
@@ -133,14 +118,14 @@ def test_a_batch_is_its_designs_one_by_one(name: str, moments: fes_mj.JointMomen
     reaching = together.turning.reach > 0
     assert 0 < reaching.sum() < 200
     for row in np.flatnonzero(reaching)[:20]:
-        alone = cycles(single(batch, int(row)), table)
+        alone = cycles(batch.single(int(row)), table)
         assert together.work[row, 0] == pytest.approx(alone.work[0, 0], rel=1e-12)
         assert together.low.hip[row] == pytest.approx(alone.low.hip[0], rel=1e-12)
     for row in np.flatnonzero(~reaching)[:20]:
         assert np.isnan(together.work[row]).all()
         assert np.isnan(together.travel.knee[row])
         with pytest.raises(fes_mj.AssemblyError):
-            turning(single(batch, int(row)))
+            turning(batch.single(int(row)))
 
 
 def test_sets_of_moments_side_by_side_are_the_sets_alone() -> None:

@@ -24,7 +24,7 @@ def flipped(name: str, **parts: complex) -> Design:
         part: complex(getattr(design.linkage, part).real * sign.real, getattr(design.linkage, part).imag * sign.imag)
         for part, sign in parts.items()
     }
-    return replace(design, linkage=replace(design.linkage, **changes))
+    return design.with_linkage(**changes)
 
 
 @pytest.mark.parametrize("name", ["r1", "r2", "d1", "d2"])
@@ -63,7 +63,7 @@ def test_a_hip_that_never_enters_the_range_is_refused_and_one_that_does_is_not(d
 
 @given(designs(), periodic_moments())
 def test_seat_angles_a_turn_apart_are_the_same(design: Design, moments: JointMoments) -> None:
-    turned = replace(design, linkage=replace(design.linkage, seat_angle=design.linkage.seat_angle - 2 * np.pi))
+    turned = design.with_linkage(seat_angle=design.linkage.seat_angle - 2 * np.pi)
     one, other = (fes_mj.quasi_static(each, moments, points=360) for each in (design, turned))
     assert one.crank_moment == pytest.approx(other.crank_moment, abs=1e-9)
     assert one.joint_range_deg.hip == pytest.approx(other.joint_range_deg.hip, abs=1e-9)
@@ -80,7 +80,7 @@ def test_numbers_and_arrays_agree_all_round_the_circle(moments: JointMoments) ->
 def test_the_share_of_a_known_excursion() -> None:
     """The TRT reclined by 6 deg: shares against a count, the error against the integral by hand."""
     trt, moments = fes_mj.load_design("trt"), fes_mj.load_moments()
-    reclined = replace(trt, linkage=replace(trt.linkage, seat_angle=trt.linkage.seat_angle - np.radians(6)))
+    reclined = trt.with_linkage(seat_angle=trt.linkage.seat_angle - np.radians(6))
     result = fes_mj.quasi_static(reclined, moments)
     low, high = PAPER_TRICYCLE.ranges.hip
     outside = result.joint_angle.hip > high + NO_MORE
@@ -99,10 +99,7 @@ def test_the_share_of_a_known_excursion() -> None:
 
 def test_the_error_bar_grows_with_the_excess() -> None:
     d1, moments = fes_mj.load_design("d1"), fes_mj.load_moments()
-    results = [
-        fes_mj.quasi_static(replace(d1, linkage=replace(d1.linkage, seat_angle=np.radians(seat))), moments)
-        for seat in (24, 21, 18.5)
-    ]
+    results = [fes_mj.quasi_static(d1.with_linkage(seat_angle=np.radians(seat)), moments) for seat in (24, 21, 18.5)]
     assert np.all(np.diff([each.extrapolation.sd for each in results]) > 0)
     for each in results:
         assert each.power_sd is not None

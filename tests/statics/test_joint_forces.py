@@ -42,7 +42,7 @@ def test_lighter_legs_have_an_error_and_full_ones_none() -> None:
     factor, deviation = leg_mass_after_injury()
     assert JointForces(quasi_static(design, moments)).leg_mass_sd is None
     less, middle, more = (
-        JointForces(quasi_static(design.changed({}, {"leg_mass_factor": factor + sign * deviation}), moments))
+        JointForces(quasi_static(design.with_rider(leg_mass_factor=factor + sign * deviation), moments))
         for sign in (-1, 0, 1)
     )
     for joint, force in middle.with_masses.items():

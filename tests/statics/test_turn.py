@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from fes_mj import quasi_static
+from fes_mj.common.errors import InputError
 from fes_mj.linkage.design import Design
+from fes_mj.linkage.design_file import load_design
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.statics.turn import equilibrium, virtual_work
@@ -68,3 +70,15 @@ def test_loads_enter_equilibrium_as_they_enter_virtual_work(design: Design, smoo
     moment, _ = equilibrium(result.motion, result.joint_moment, loads)
     work = virtual_work(result.motion, result.joint_moment, loads)
     assert np.abs(moment - work).max() < 1e-9 * np.abs(work).max()
+
+
+def test_a_batch_of_designs_is_refused_with_the_name_of_what_takes_it(moments: JointMoments) -> None:
+    batch = load_design("d1").with_rider(thigh=np.array([[0.5], [0.52]]))
+    with pytest.raises(InputError, match=r"d1: a batch of designs; fes_mj\.statics\.cycles\.cycles"):
+        quasi_static(batch, moments)
+
+
+@pytest.mark.parametrize("cadence", [0.0, -1.0, np.nan])
+def test_a_crank_that_does_not_turn_is_refused(moments: JointMoments, cadence: float) -> None:
+    with pytest.raises(InputError, match="d1: cadence is"):
+        quasi_static(load_design("d1"), moments, cadence)

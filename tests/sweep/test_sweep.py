@@ -33,7 +33,7 @@ def test_every_point_once_and_as_the_solver_says(study: Path, tmp_path: Path) ->
         design = fes_mj.load_design("d2") if row["design"] == "mine.toml" else fes_mj.load_design(row["design"])
         moved = row["R1x"] + 1j * design.linkage.ground.imag
         linkage = replace(design.linkage, ground=moved, gear_ratio=row["gear_ratio"])
-        design = replace(design, linkage=linkage, rider=replace(design.rider, thigh=row["thigh"]))
+        design = replace(design, linkage=linkage).with_rider(thigh=row["thigh"])
         moments = fes_mj.load_moments(tmp_path / "mine.csv" if row["moments"] == "mine.csv" else row["moments"])
         static = fes_mj.quasi_static(design, moments, row["cadence_rpm"] * math.pi / 30)
         assert row["power_mean_W"] == pytest.approx(static.power_mean, rel=2e-4, abs=1e-3)

@@ -212,10 +212,7 @@ def test_e5_the_coupler_points_the_other_way_in_eq_11() -> None:
 def test_e6_no_gamma_in_the_tables() -> None:
     """Ten parameters do not fix a CDT: gamma = 0 and 90 deg give D1 knee ranges 10 deg apart."""
     printed = fes_mj.load_design("d1", "printed")
-    knee = [
-        joint_ranges(replace(printed, linkage=replace(printed.linkage, coupler_angle=math.radians(angle))))[:2]
-        for angle in (0.0, 90.0)
-    ]
+    knee = [joint_ranges(printed.with_linkage(coupler_angle=math.radians(angle)))[:2] for angle in (0.0, 90.0)]
     assert np.abs(knee[0] - knee[1]).max() > 10
     assert not identify(printed, table1()["d1"], coupler_angle=0.0).feasible
 
@@ -225,7 +222,7 @@ def test_e7_seat_angles() -> None:
     hip = np.array(table1()["trt"].hip_range)
     for dims, seat in (("identified", 60.0), ("printed", 15.4)):
         design = fes_mj.load_design("trt", dims)
-        level = joint_ranges(replace(design, linkage=replace(design.linkage, seat_angle=0.0)))[2:]
+        level = joint_ranges(design.with_linkage(seat_angle=0.0))[2:]
         assert float(np.mean(level - hip)) % 360 == pytest.approx(seat, abs=0.6)
     one_angle = replace(fes_mj.load_design("trt").linkage, seat_angle=math.radians(30))
     assert joint_ranges(replace(fes_mj.load_design("trt"), linkage=one_angle))[2] - hip[0] == pytest.approx(30, abs=0.6)
@@ -300,7 +297,7 @@ def test_e14_which_designs_lead_with_p1p3() -> None:
 def test_e15_power_is_unbounded_in_the_gear_ratio() -> None:
     """Twice the gear ratio, twice the power, and no constraint of Eq. 15 feels it."""
     design, moments = fes_mj.load_design("d1"), fes_mj.load_moments("p1p2")
-    doubled = replace(design, linkage=replace(design.linkage, gear_ratio=2 * design.linkage.gear_ratio))
+    doubled = design.with_linkage(gear_ratio=2 * design.linkage.gear_ratio)
     power = [fes_mj.quasi_static(one, moments).power_mean for one in (design, doubled)]
     assert power[1] == pytest.approx(2 * power[0], rel=1e-12)
     assert np.array_equal(joint_ranges(design), joint_ranges(doubled))

@@ -31,7 +31,7 @@ def any_linkage(rng: np.random.Generator) -> Design:
     rider = Rider(uniform(0.4, 0.6), uniform(0.4, 0.6), uniform(45, 110))
     seat, branch = uniform(-math.pi, 1.5 * math.pi), str(rng.choice(["left", "right"]))
     changes = {"gear_ratio": uniform(0.5, 3), "seat_angle": seat} | ({"branch": branch} if kind != "trt" else {})
-    return Design("any", linkage, rider).changed(linkage=changes, rider={})
+    return Design("any", linkage, rider).with_linkage(**changes)
 
 
 @pytest.mark.long

@@ -1,0 +1,47 @@
+"""Designs, alone and in batches: what they refuse, and how they are changed."""
+
+import math
+
+import numpy as np
+import pytest
+
+from fes_mj.common.errors import InputError
+from fes_mj.linkage.design import SEXES, Linkage, Rider
+from fes_mj.linkage.design_file import load_design
+from fes_mj.linkage.segments import DE_LEVA, FOOT_LENGTH
+from fes_mj.linkage.variables import replaced
+
+
+def test_words_that_nothing_is_known_of_are_refused_where_they_are_said() -> None:
+    with pytest.raises(InputError, match="kind is 'abc'; it must be one of trt, crt, cdt"):
+        Linkage("abc", -0.7 - 0.3j, 0.15, 0.07)
+    with pytest.raises(InputError, match="branch is 'up'; it must be one of left, right"):
+        Linkage("crt", -0.7 - 0.3j, 0.15, 0.07, branch="up")
+    with pytest.raises(InputError, match="sex is 'x'; it must be one of male, female"):
+        Rider(sex="x")
+    assert (*DE_LEVA,) == (*FOOT_LENGTH,) == SEXES
+
+
+@pytest.mark.parametrize("cadence", [0.0, -6.0, math.nan, math.inf])
+def test_a_cadence_at_which_nothing_turns_is_refused(cadence: float) -> None:
+    with pytest.raises(InputError, match=rf"d1: cadence is {cadence:g}; it must be a crank speed above 0 in rad/s"):
+        load_design("d1").crank_speed(cadence)
+
+
+def test_a_cadence_that_is_not_given_is_the_designs_own() -> None:
+    design = load_design("d1")
+    assert design.crank_speed() == design.linkage.cadence
+    assert design.crank_speed(6.0) == 6.0
+
+
+def test_the_designs_of_a_batch_are_those_that_it_was_made_of() -> None:
+    design, crank, mass = load_design("d1"), np.array([[0.1], [0.12], [0.14]]), np.array([[60.0], [70.0], [80.0]])
+    batch = design.with_linkage(crank=crank).with_rider(mass=mass)
+    assert batch.is_batch
+    assert not design.is_batch
+    assert (batch.size, design.size) == (3, 1)
+    alone = [replaced(design, {"R2": crank[row, 0].item(), "mass": mass[row, 0].item()}) for row in range(3)]
+    assert [batch.single(row) for row in range(3)] == alone
+    later = batch.taken([2, 0])
+    assert [later.single(row) for row in range(2)] == [alone[2], alone[0]]
+    assert design.taken([0, 0]) == design.single(5) == design
