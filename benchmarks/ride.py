@@ -15,10 +15,9 @@ from fes_mj.common.writing import json_text, write_text
 from fes_mj.linkage.design_file import load_design
 from fes_mj.moments.files import load_moments
 from fes_mj.moments.torque_velocity import load_torque_velocity
-from fes_mj.riding import reduced
 from fes_mj.riding.ride import Ride
+from fes_mj.riding.trace import ride as ride_by_equation
 from fes_mj.simulation.road import ride_on_road
-from fes_mj.simulation.road_control import compiled_road_loop
 from fes_mj.simulation.road_mjcf import TIMESTEP, build_road_mjcf
 
 DURATION = 60.0  # s of riding
@@ -40,8 +39,8 @@ def rates(name: str) -> dict[str, np.ndarray]:
 
     measured = core.rates(
         {
-            f"{name}: reduced": (1, lambda: reduced.ride(ride, compiled=True)),
-            f"{name}: MuJoCo, everything recorded": (1, lambda: ride_on_road(ride, make_loop=compiled_road_loop)),
+            f"{name}: reduced": (1, lambda: ride_by_equation(ride)),
+            f"{name}: MuJoCo, everything recorded": (1, lambda: ride_on_road(ride)),
             f"{name}: bare mj_step": (1, bare),
         },
         ROUNDS,

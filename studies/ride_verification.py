@@ -52,7 +52,7 @@ class Outcome(NamedTuple):
 
 def outcome(ride: Ride) -> Outcome:
     """Ride once, both ways."""
-    case = RideCase(ride, compiled=True)
+    case = RideCase(ride)
     return Outcome(ride, case.summary(), case.checks)
 
 

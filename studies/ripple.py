@@ -25,8 +25,8 @@ from fes_mj.optimization.limits import DEFAULT
 from fes_mj.optimization.optimize import run_searches
 from fes_mj.optimization.problem import Problem
 from fes_mj.optimization.winner import assess
-from fes_mj.riding.reduced import steady_ripple
 from fes_mj.riding.ride import Ride, balancing_slope
+from fes_mj.riding.ripple import steady_ripple
 from studies.optimizers import problem
 
 FOLDER = Path("results/optimization")
@@ -60,7 +60,7 @@ def ridden(design: Design, limit: float | None) -> dict[str, Any]:
     """A design on the slope that its mean power balances, with a freewheel: the cells of COLUMNS."""
     level = Ride(design, MOMENTS)
     slope, winner = balancing_slope(level), assess(design, load_design("d1"), MOMENTS)
-    case = RideCase(replace(level, road=replace(level.road, slope=slope)), compiled=True)
+    case = RideCase(replace(level, road=replace(level.road, slope=slope)))
     trace = case.simulation.trace
     stopped = f"stops after {trace.stopped_at:.1f} s" if trace.stopped_at is not None else "rides"
     cells = (

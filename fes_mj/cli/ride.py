@@ -25,8 +25,9 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from fes_mj.crosscheck.ride_case import RideCase
-    from fes_mj.riding.ride import Ride, Trace
+    from fes_mj.riding.ride import Ride
     from fes_mj.riding.starts import Starts
+    from fes_mj.riding.trace import Trace
 
 
 _RANGES = {

@@ -6,15 +6,17 @@ from functools import cached_property
 from importlib.metadata import version
 from typing import Any
 
+import mujoco
 import numpy as np
 
 from fes_mj.common.arrays import FloatArray
 from fes_mj.common.checks import LEAST_POWER, Check, check
 from fes_mj.common.writing import csv_text
-from fes_mj.riding import reduced
-from fes_mj.riding.ride import Ride, Trace
+from fes_mj.riding.ride import Ride
+from fes_mj.riding.trace import Trace, ride as ride_by_equation
+from fes_mj.simulation.appearance import Spec
 from fes_mj.simulation.road import RoadRun, ride_on_road
-from fes_mj.simulation.road_control import compiled_road_loop, road_loop
+from fes_mj.simulation.road_control import RoadControl, road_control
 from fes_mj.simulation.road_mjcf import TIMESTEP
 
 DISTANCES = 2000  # at which the two speeds are compared
@@ -24,22 +26,33 @@ DISTANCES = 2000  # at which the two speeds are compared
 class RideCase:
     """A ride, computed when it is first asked for, by either solver.
 
-    timestep: of MuJoCo, s. compiled: both in machine code, which takes seconds to make; needs numba.
+    The methods up to `reference` are its steps; a subclass that replaces one of them is a ride with a fault in one
+    solver. timestep: of MuJoCo, s.
     """
 
     ride: Ride
     timestep: float = TIMESTEP
-    compiled: bool = False
+
+    # The steps.
+
+    def edit_model(self, spec: Spec) -> None:
+        """Change the MuJoCo model before it is compiled; nothing is changed here."""
+
+    def control(self, model: mujoco.MjModel) -> RoadControl:
+        """What muscles and freewheel do in each step of MuJoCo."""
+        return road_control(self.ride, model)
 
     @cached_property
     def simulation(self) -> RoadRun:
         """By MuJoCo. Raises UnstableError if it breaks down."""
-        return ride_on_road(self.ride, self.timestep, compiled_road_loop if self.compiled else road_loop)
+        return ride_on_road(self.ride, self.timestep, edit=self.edit_model, control=self.control)
 
     @cached_property
     def reference(self) -> Trace:
         """By the reduced equation of motion."""
-        return reduced.ride(self.ride, self.compiled)
+        return ride_by_equation(self.ride)
+
+    # What is concluded.
 
     def check(self, name: str, value: float) -> Check:
         """A measured value of this ride beside its limit."""
@@ -61,22 +74,21 @@ class RideCase:
 
     def _power_difference(self) -> float:
         """Mean power of MuJoCo's muscles less what the reference's road takes and its motion gains, relative."""
-        delivered, taken, gained = self.simulation.trace.muscle_power, self.reference.road_power, None
-        if taken is not None:
-            gained = reduced.gained_power(self.reference)
+        delivered, taken = self.simulation.trace.muscle_power, self.reference.road_power
+        gained = self.reference.gained_power
         if delivered is None or taken is None or gained is None:
             return 0.0 if delivered is taken is None else math.inf
         return abs(delivered - taken - gained) / max(abs(delivered), LEAST_POWER)
 
     @property
     def agrees(self) -> bool:
-        return all(each.ok for each in self.checks)
+        return all(check.ok for check in self.checks)
 
     def summary(self) -> dict[str, Any]:
         """The result as JSON names and units it."""
         return self.simulation.trace.summary() | {
             "agrees": self.agrees,
-            "checks": [each.as_json() for each in self.checks],
+            "checks": [check.as_json() for check in self.checks],
             "reduced": {
                 key: value
                 for key, value in self.reference.summary().items()
@@ -125,9 +137,9 @@ def speed_difference(one: Trace, other: Trace) -> float:
 
     Distances are those that both reach; speeds at equal times would differ by what little one is ahead.
     """
-    reach = min(float(each.distance.max()) for each in (one, other))
+    reach = min(float(trace.distance.max()) for trace in (one, other))
     at = np.linspace(0, reach, DISTANCES)
-    mine, theirs = (_speed_at(each, at) for each in (one, other))
+    mine, theirs = (_speed_at(trace, at) for trace in (one, other))
     scale = math.sqrt(float(np.mean(theirs**2)))
     return math.sqrt(float(np.mean((mine - theirs) ** 2))) / scale if scale else 0.0
 

@@ -12,8 +12,8 @@ from fes_mj.linkage.kinematics import FULL_TURN, Motion, solve
 from fes_mj.linkage.legs import all_legs
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.torque_map import torque_map
-from fes_mj.riding.reduced import even_ripple
 from fes_mj.riding.ride import Ride, Road
+from fes_mj.riding.ripple import even_ripple
 from fes_mj.statics.characteristics import energy_swing
 from fes_mj.statics.turn import virtual_work
 
@@ -31,7 +31,7 @@ def fluctuation(design: Design, moments: JointMoments) -> FloatArray:
 class RippleLimit:
     """Largest ripple of the crank speed, (largest - smallest) / mean, that a design may have.
 
-    Ridden with a fixed gear at the tricycle's speed, both legs driven by these moments; see reduced.steady_ripple.
+    Ridden with a fixed gear at the tricycle's speed, both legs driven by these moments; see ripple.steady_ripple.
     """
 
     limit: float

@@ -11,8 +11,8 @@ from fes_mj.linkage.design import Design
 from fes_mj.linkage.joints import PerJoint
 from fes_mj.linkage.variables import lengths, with_lengths
 from fes_mj.moments.joint_moments import JointMoments
-from fes_mj.riding.reduced import steady_ripple
 from fes_mj.riding.ride import Ride
+from fes_mj.riding.ripple import steady_ripple
 from fes_mj.statics.cycles import WorkTable, cycles, joint_speeds
 from fes_mj.statics.turn import difference_sd, quasi_static
 
@@ -86,7 +86,7 @@ class Winner:
     """A design with everything that was found out about it.
 
     case: simulated and cross-checked. joint_speed: mean absolute, deg/s. reversals: of each joint in a turn. ripple: of
-    the crank speed, reduced.steady_ripple. gain: over `compared_with` under the same moments, None for moments without
+    the crank speed, steady_ripple. gain: over `compared_with` under the same moments, None for moments without
     error bars.
     """
 

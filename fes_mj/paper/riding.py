@@ -21,9 +21,9 @@ from fes_mj.moments.samples import sampled_moments
 from fes_mj.moments.torque_velocity import drawn_relations, load_torque_velocity
 from fes_mj.moments.uncertainty import with_sd
 from fes_mj.paper.captions import captioned
-from fes_mj.riding import reduced
-from fes_mj.riding.ride import TRANSMISSIONS, Ride, Road, Trace, balancing_slope
+from fes_mj.riding.ride import TRANSMISSIONS, Ride, Road, balancing_slope
 from fes_mj.riding.starts import Starts, starts
+from fes_mj.riding.trace import Trace, ride as solved
 
 DRAWS = 48  # of muscles; a standard deviation of so many is known to a tenth of itself
 START_DRAWS = 12  # of these, in the search for starts, which takes some thirty times as long as a ride; to a fifth
@@ -55,7 +55,7 @@ class Riding:
 
 
 def study(done: Callable[[], None]) -> list[Riding]:
-    """All rides. Raises MissingPartError without numba."""
+    """All rides; without numba it takes hours."""
     found: list[Riding] = []
     for group in GROUPS:
         muscles = _muscles(group)
@@ -84,20 +84,16 @@ def _riding(design: Design, group: str, muscles: list[JointMoments], transmissio
             group,
             transmission,
             slope,
-            [*threads.map(_solved, level)],
-            [*threads.map(_solved, uphill)],
+            [*threads.map(solved, level)],
+            [*threads.map(solved, uphill)],
             [*threads.map(lambda ride: starts(ride, ANGLES), brief)],
-            {each: [trace.mean_speed or 0.0 for trace in threads.map(_solved, some)] for each, some in geared.items()},
+            {each: [trace.mean_speed or 0.0 for trace in threads.map(solved, some)] for each, some in geared.items()},
         )
 
 
 def _geared(ride: Ride, ratio: float, slope: float) -> Ride:
     linkage = replace(ride.design.linkage, gear_ratio=ratio * ride.design.linkage.gear_ratio)
     return replace(ride, design=replace(ride.design, linkage=linkage), road=Road(slope=slope))
-
-
-def _solved(ride: Ride) -> Trace:
-    return reduced.ride(ride, compiled=True)
 
 
 def speed_table(found: list[Riding]) -> Table:

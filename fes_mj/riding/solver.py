@@ -1,247 +1,283 @@
-"""The steps of a ride by the reduced equation of motion (fes_mj.riding.reduced), interpreted or in machine code."""
+"""The reduced equation of motion of a ride, integrated from event to event.
+
+Crank angle a with speed w, and the tricycle's speed v, which recoils with the legs. With the kinetic energy
+I(a) w^2 / 2 - X(a) w v + m v^2 / 2, where X = sum of m dx/da over both legs' bodies, and their potential energy V(a),
+
+    I w' - X v' = Q - V'(a) - I'(a) w^2 / 2 - T        (crank)
+    m v' - X w' = X'(a) w^2 - F(v) + T / c             (tricycle)
+
+Q is the virtual work of the joint moments, F the road's force and T the moment that the transmission takes from the
+crank. A fixed gear keeps v = c w. A freewheel does while T is positive, and otherwise lets v run ahead of c w with
+T = 0: no impact, no memory. Rolling resistance is dry friction: it holds a tricycle that stands.
+"""
 
 import math
-from collections.abc import Callable
-from functools import cache
-from typing import Any
+from typing import Any, NamedTuple
 
-from fes_mj.common.arrays import FloatArray
-from fes_mj.common.errors import require_extra
+from fes_mj.common.machine_code import kept_machine_code, machine_code, sources
+from fes_mj.linkage.inertia import CrankInertia
 from fes_mj.linkage.segments import GRAVITY
-from fes_mj.moments.drive import POINTS
-from fes_mj.moments.torque_velocity import AT_ANY_SPEED, hill_factor
+from fes_mj.moments.muscle_response import MUSCLES, Response, between, delivered, lead, place
+from fes_mj.riding.leg_table import LegTable
 from fes_mj.riding.ride import Ride
+from fes_mj.riding.trace import Steps
 
-# A step: so much of the crank, running free or engaged with the tricycle's inertia behind it, or of the time where it
-# is slow. A quarter of it changes the speed of the paper's designs after a minute by less than 1e-4 of itself.
-STEP_ANGLES, STEP_TIME = (math.radians(1.0), math.radians(2.0)), 0.008  # rad, s
 TOUCH = 1e-12  # m/s: rounding, by which a crank that has just caught up may be too fast or too slow
+STANDING = 1e-9  # rad/s: a crank that is slower takes no step by its angle
 HALVINGS = 30  # of a step, to find an event in it
-ROWS = 4096  # samples that are made before Python looks at them
-
-# Columns of the table over crank angle: of both legs together, then by leg and joint.
-INERTIA, INERTIA_RATE, RECOIL, RECOIL_RATE, HEIGHT_RATE, RATES, COMMANDS = 0, 1, 2, 3, 4, 5, 9
-AHEAD, BEHIND = 13, 14  # the next crank angles at which the moments break, rad
-MUSCLES = 4  # knee and hip of the first leg, then of the other
-# Components of the state; the muscles' answers follow.
-ANGLE, CRANK, DISTANCE, SPEED, MUSCLE_WORK, ROAD_WORK, ANSWERS = 0, 1, 2, 3, 4, 5, 6
-STATE = ANSWERS + MUSCLES
-WORK = 8  # vectors that the solver works with
+COUNT = len(MUSCLES)
 
 
-def constants(ride: Ride) -> tuple[float, ...]:
-    """What the solver must know of a ride beside the table."""
-    load, relation = ride.load, ride.moments.torque_velocity
-    hill = relation or AT_ANY_SPEED
-    return (
-        float(ride.fixed),
-        ride.travel,
-        load.inertia,
-        load.rolling,
-        load.climb,
-        load.drag,
-        GRAVITY * math.cos(ride.road.angle),
-        GRAVITY * math.sin(ride.road.angle),
-        ride.lag,
-        ride.moments.measured_on.cadence,
-        hill.curvature,
-        hill.eccentric_plateau,
-        hill.max_speed["knee"],
-        hill.max_speed["hip"],
-        ride.duration,
+class Vehicle(NamedTuple):
+    """What a ride's tricycle and road do. travel: c, m/rad. rolling, climb: N. drag: N s^2/m^2.
+
+    upright, along: the parts of gravity across the road and down it, m/s^2.
+    """
+
+    fixed: bool
+    travel: float
+    inertia: float
+    rolling: float
+    climb: float
+    drag: float
+    upright: float
+    along: float
+
+
+class System(NamedTuple):
+    """All that the equation of motion knows of a ride."""
+
+    table: LegTable
+    response: Response
+    vehicle: Vehicle
+    steps: Steps
+
+
+class State(NamedTuple):
+    """Angles in rad, speeds in rad/s and m/s, work since the start in J; answers: moments at rest of MUSCLES, N m."""
+
+    crank_angle: float
+    crank_speed: float
+    distance: float
+    speed: float
+    muscle_work: float
+    road_work: float
+    answers: tuple[float, float, float, float]
+
+
+# What is kept of a state at each step: fields of a Trace.
+SAMPLE = ("time", "coasting", *State._fields[:-1])
+
+
+class Mode(NamedTuple):
+    """Whether the crank drives the wheel, and in which direction the tricycle moves; 0 if dry friction holds it."""
+
+    engaged: bool
+    direction: int
+
+
+def system(ride: Ride, steps: Steps) -> System:
+    """The equation of motion of a ride."""
+    load, angle = ride.load, ride.road.angle
+    gravity = GRAVITY * math.cos(angle), GRAVITY * math.sin(angle)
+    vehicle = Vehicle(ride.fixed, ride.travel, load.inertia, load.rolling, load.climb, load.drag, *gravity)
+    return System(ride.table, Response.of(ride.moments, ride.lag), vehicle, steps)
+
+
+@machine_code
+def moved(state: State, rates: State, time: float) -> State:
+    """A state, and so much time along its rates."""
+    old, new = state.answers, rates.answers
+    return State(
+        state.crank_angle + time * rates.crank_angle,
+        state.crank_speed + time * rates.crank_speed,
+        state.distance + time * rates.distance,
+        state.speed + time * rates.speed,
+        state.muscle_work + time * rates.muscle_work,
+        state.road_work + time * rates.road_work,
+        (old[0] + time * new[0], old[1] + time * new[1], old[2] + time * new[2], old[3] + time * new[3]),
     )
 
 
-def as_floats(table: FloatArray) -> list[tuple[float, ...]]:
-    """The table for Python, which reads plain numbers ten times faster than an array's."""
-    return [tuple(row) for row in table.tolist()]
+@machine_code
+def commands(system: System, angle: float, speed: float) -> tuple[float, float, float, float]:
+    """Moments at rest that MUSCLES are commanded at a crank angle and speed, N m."""
+    curves = system.table.command
+    row, part = place(angle + lead(system.response, speed), len(curves[0]) - 1)
+    return (
+        between(curves[0], row, part),
+        between(curves[1], row, part),
+        between(curves[2], row, part),
+        between(curves[3], row, part),
+    )
 
 
-@cache
-def interpreted() -> Callable[..., Any]:
-    """The solver in Python."""
-    return _solver(lambda function: function)
+@machine_code
+def rates_of(system: System, state: State, mode: Mode) -> tuple[State, float]:
+    """Rates of a state, and T where the transmission is engaged (N m), elsewhere the wheel's push (N)."""
+    table, response, vehicle, _ = system
+    masses, speed, travelling = table.masses, state.crank_speed, state.speed
+    row, part = place(state.crank_angle, len(table.ahead) - 1)
+    inertia, recoil = between(masses.inertia, row, part), between(masses.recoil, row, part)
+    command = commands(system, state.crank_angle, speed)
+    lag, moments, answering = response.lag, command, (0.0, 0.0, 0.0, 0.0)
+    if lag > 0:
+        moments = now = state.answers
+        answering = (
+            (command[0] - now[0]) / lag,
+            (command[1] - now[1]) / lag,
+            (command[2] - now[2]) / lag,
+            (command[3] - now[3]) / lag,
+        )
+    drive = 0.0
+    for muscle in range(COUNT):
+        rate = between(table.joint_rate[muscle], row, part)
+        drive += rate * delivered(response, muscle, moments[muscle], rate * speed)
+    # the road is tilted by tilting gravity: backwards along it, and upright on it
+    weight = vehicle.upright * between(masses.height_rate, row, part) - vehicle.along * recoil
+    crank = drive - weight - between(masses.inertia_rate, row, part) / 2 * speed * speed
+    resistance = vehicle.rolling * mode.direction + vehicle.climb + vehicle.drag * travelling * abs(travelling)
+    wheel = between(masses.recoil_rate, row, part) * speed * speed - resistance
+    travel, mass = vehicle.travel, vehicle.inertia
+    if mode.engaged:
+        turning = 0.0
+        if mode.direction != 0:
+            turning = (crank + travel * wheel) / (inertia - 2 * travel * recoil + travel * travel * mass)
+        rolling = travel * turning
+        push = crank - (inertia - travel * recoil) * turning
+    elif mode.direction != 0:
+        determinant = inertia * mass - recoil * recoil
+        turning, rolling = (
+            (mass * crank + recoil * wheel) / determinant,
+            (recoil * crank + inertia * wheel) / determinant,
+        )
+        push = 0.0
+    else:
+        turning, rolling = crank / inertia, 0.0
+        push = recoil * turning + wheel
+    return State(speed, turning, travelling, rolling, drive * speed, resistance * travelling, answering), push
 
 
-@cache
-def compiled() -> Callable[..., Any]:
-    """The solver in machine code. Raises MissingPartError without numba."""
-    njit: Any = require_extra("optimize", "numba").njit
-    return _solver(njit(nogil=True))
+@machine_code
+def ended(vehicle: Vehicle, state: State, mode: Mode, push: float) -> bool:
+    """Whether a mode is over: the tricycle comes to rest or is moved, the freewheel opens or closes."""
+    if mode.engaged and not vehicle.fixed and push < 0:
+        return True
+    if not mode.engaged and state.crank_speed * vehicle.travel > state.speed + TOUCH:
+        return True
+    if mode.direction != 0:
+        return mode.direction * state.speed < 0
+    force = push / vehicle.travel - vehicle.climb if mode.engaged else push
+    return abs(force) > vehicle.rolling
 
 
-def _solver(compiled: Callable[[Any], Any]) -> Callable[..., Any]:
-    """Steps a ride until its end or until its rows are full. compiled: what makes machine code of Python functions."""
-    hill, turn = compiled(hill_factor), 2 * math.pi
-    cells = POINTS / turn
+@machine_code
+def driven(force: float, friction: float) -> int:
+    """Direction in which a force (N) moves what dry friction would hold; 0 if it holds."""
+    return 1 if force > friction else -1 if force < -friction else 0
 
-    @compiled
-    def commanded(table: Any, constants: Any, angle: float, speed: float, into: Any) -> None:
-        """Moments that the muscles are told, as at rest, N m; with a lag, ahead of its phase at this crank speed."""
-        lag, measured = constants[8], constants[9]
-        if lag > 0:  # what is left of the first harmonic's lag is what the command itself makes good
-            angle += math.atan(speed * lag) - math.atan(measured * lag)
-        place = (angle % turn) * cells
-        row = int(place)
-        part = place - row
-        low, high = table[row], table[row + 1]
-        for muscle in range(MUSCLES):
-            command = low[COMMANDS + muscle]
-            into[muscle] = command + part * (high[COMMANDS + muscle] - command)
 
-    @compiled
-    def rates(table: Any, constants: Any, state: Any, engaged: int, way: int, told: Any, out: Any) -> Any:
-        """Rates of the state; returns T where the transmission is engaged, elsewhere the wheel's push, N.
+@machine_code
+def mode_of(system: System, state: State) -> Mode:
+    """The mode in which a state goes on."""
+    vehicle = system.vehicle
+    direction = driven(state.speed, 0.0)
+    together = vehicle.fixed or state.crank_speed * vehicle.travel >= state.speed - TOUCH
+    if together and direction != 0:
+        _, push = rates_of(system, state, Mode(True, direction))
+        return Mode(vehicle.fixed or push >= 0, direction)
+    if together:  # and stands
+        _, push = rates_of(system, state, Mode(True, 0))
+        if vehicle.fixed or push >= 0:
+            return Mode(True, driven(push / vehicle.travel - vehicle.climb, vehicle.rolling))
+    if direction == 0:
+        _, force = rates_of(system, state, Mode(False, 0))
+        direction = driven(force, vehicle.rolling)
+        if together and direction < 0:  # it rolls back, perhaps faster than the crank falls
+            rates, _ = rates_of(system, state, Mode(False, direction))
+            if rates.crank_speed * vehicle.travel > rates.speed:
+                return Mode(True, direction)
+    return Mode(False, direction)
 
-        way: in which the tricycle moves, 0 if dry friction holds it.
-        """
-        angle, speed, travelling = state[ANGLE], state[CRANK], state[SPEED]
-        _, travel, mass, rolling, climb, drag, upright, along, lag, _, curvature, plateau, knee, hip, _ = constants
-        place = (angle % turn) * cells
-        row = int(place)
-        part = place - row
-        low, high = table[row], table[row + 1]
-        inertia = low[INERTIA] + part * (high[INERTIA] - low[INERTIA])
-        half_change = (low[INERTIA_RATE] + part * (high[INERTIA_RATE] - low[INERTIA_RATE])) / 2
-        recoil = low[RECOIL] + part * (high[RECOIL] - low[RECOIL])
-        recoil_change = low[RECOIL_RATE] + part * (high[RECOIL_RATE] - low[RECOIL_RATE])
-        rise = low[HEIGHT_RATE] + part * (high[HEIGHT_RATE] - low[HEIGHT_RATE])
-        commanded(table, constants, angle, speed, told)
-        drive = 0.0
-        for muscle in range(MUSCLES):
-            rate = low[RATES + muscle] + part * (high[RATES + muscle] - low[RATES + muscle])
-            moment = told[muscle]
-            if lag > 0:
-                moment = state[ANSWERS + muscle]
-                out[ANSWERS + muscle] = (told[muscle] - moment) / lag
-            limit = hip if muscle % 2 else knee
-            relative = (rate if moment > 0 else -rate) * speed / limit
-            drive += moment * rate * hill(curvature, plateau, min(max(relative, 0.0), 1.0), max(-relative, 0.0))
-        # the road is tilted by tilting gravity: backwards along it, and upright on it
-        crank = drive - upright * rise + along * recoil - half_change * speed * speed
-        resistance = rolling * way + climb + drag * travelling * abs(travelling)
-        wheel = recoil_change * speed * speed - resistance
-        if engaged:
-            acceleration = 0.0
-            if way != 0:
-                whole = inertia - 2 * travel * recoil + travel * travel * mass
-                acceleration = (crank + travel * wheel) / whole
-            out[CRANK], out[SPEED] = acceleration, travel * acceleration
-            push = crank - (inertia - travel * recoil) * acceleration
-        elif way != 0:
-            determinant = inertia * mass - recoil * recoil
-            out[CRANK] = (mass * crank + recoil * wheel) / determinant
-            out[SPEED] = (recoil * crank + inertia * wheel) / determinant
-            push = 0.0
+
+@machine_code
+def stepped(system: System, start: State, mode: Mode, time: float) -> tuple[State, float]:
+    """A step of Runge and Kutta: the state at its end, and what rates_of says of T or the push there."""
+    first, _ = rates_of(system, start, mode)
+    second, _ = rates_of(system, moved(start, first, time / 2), mode)
+    third, _ = rates_of(system, moved(start, second, time / 2), mode)
+    fourth, _ = rates_of(system, moved(start, third, time), mode)
+    middle = moved(moved(moved(start, first, time / 6), second, time / 3), third, time / 3)
+    end = moved(middle, fourth, time / 6)
+    _, push = rates_of(system, end, mode)
+    return end, push
+
+
+@machine_code
+def to_event(system: System, start: State, mode: Mode, longest: float) -> tuple[State, float]:
+    """The state at which a mode is over within a step, and the time until then, s."""
+    vehicle, earliest, latest = system.vehicle, 0.0, longest
+    for _ in range(HALVINGS):
+        time = (earliest + latest) / 2
+        end, push = stepped(system, start, mode, time)
+        if ended(vehicle, end, mode, push):
+            latest = time
         else:
-            out[CRANK], out[SPEED] = crank / inertia, 0.0
-            push = recoil * out[CRANK] + wheel
-        out[ANGLE], out[DISTANCE] = speed, travelling
-        out[MUSCLE_WORK], out[ROAD_WORK] = drive * speed, resistance * travelling
-        return push
+            earliest = time
+    end, _ = stepped(system, start, mode, latest)
+    crank_speed, speed = end.crank_speed, end.speed
+    if mode.direction * speed < 0:
+        speed = 0.0
+        if mode.engaged:
+            crank_speed = 0.0
+    if not mode.engaged and crank_speed * vehicle.travel > speed:
+        crank_speed = speed / vehicle.travel
+    still = (end.distance, speed, end.muscle_work, end.road_work, end.answers)
+    return State(end.crank_angle, crank_speed, *still), latest
 
-    @compiled
-    def left(constants: Any, state: Any, engaged: int, way: int, push: float) -> bool:
-        """Whether a state has left its mode: the tricycle stands still or is moved, the freewheel opens or closes."""
-        fixed, travel, _, rolling, climb = constants[:5]
-        if engaged and not fixed and push < 0:
-            return True
-        if not engaged and state[CRANK] * travel > state[SPEED] + TOUCH:
-            return True
-        if way != 0:
-            return bool(way * state[SPEED] < 0)
-        force = push / travel - climb if engaged else push
-        return bool(abs(force) > rolling)
 
-    @compiled
-    def choose(table: Any, constants: Any, state: Any, told: Any, out: Any) -> Any:
-        """Mode of a state: (engaged, way)."""
-        fixed, travel, _, rolling, climb = constants[:5]
-        way = 1 if state[SPEED] > 0 else -1 if state[SPEED] < 0 else 0
-        together = fixed or state[CRANK] * travel >= state[SPEED] - TOUCH
-        if together and way != 0:
-            push = rates(table, constants, state, 1, way, told, out)
-            return (1, way) if fixed or push >= 0 else (0, way)
-        if together:  # and stands
-            push = rates(table, constants, state, 1, 0, told, out)
-            force = push / travel - climb
-            if fixed or push >= 0:
-                return 1, (1 if force > rolling else -1 if force < -rolling else 0)
-        if way == 0:
-            force = rates(table, constants, state, 0, 0, told, out)
-            way = 1 if force > rolling else -1 if force < -rolling else 0
-            if together and way < 0:  # it rolls back, perhaps faster than the crank falls
-                rates(table, constants, state, 0, way, told, out)
-                if out[CRANK] * travel > out[SPEED]:
-                    return 1, way
-        return 0, way
+@machine_code
+def longest_step(system: System, state: State, mode: Mode) -> float:
+    """Time of the next step, s: to the next break of the moments, but not across it."""
+    table, steps = system.table, system.steps
+    angle, speed = state.crank_angle % (2 * math.pi), state.crank_speed
+    row, _ = place(angle, len(table.ahead) - 1)
+    reach: float = table.ahead[row] - angle if speed > 0 else angle - table.behind[row]
+    return min(steps.time, min(steps.engaged if mode.engaged else steps.free, reach) / max(abs(speed), STANDING))
 
-    @compiled
-    def step(table: Any, constants: Any, start: Any, engaged: int, way: int, time: float, work: Any, end: Any) -> Any:
-        """A step of Runge and Kutta from `start` to `end`; returns what `rates` does there."""
-        told, probe, first, second, third, fourth = work
-        rates(table, constants, start, engaged, way, told, first)
-        for i in range(STATE):
-            probe[i] = start[i] + time / 2 * first[i]
-        rates(table, constants, probe, engaged, way, told, second)
-        for i in range(STATE):
-            probe[i] = start[i] + time / 2 * second[i]
-        rates(table, constants, probe, engaged, way, told, third)
-        for i in range(STATE):
-            probe[i] = start[i] + time * third[i]
-        rates(table, constants, probe, engaged, way, told, fourth)
-        for i in range(STATE):
-            end[i] = start[i] + time / 6 * (first[i] + 2 * (second[i] + third[i]) + fourth[i])
-        return rates(table, constants, end, engaged, way, told, first)
 
-    @compiled
-    def advance(
-        table: Any, constants: Any, state: Any, clock: float, engaged: int, way: int, begin: bool, work: Any, rows: Any
-    ) -> Any:
-        """Fill rows: time, mode (1 engaged), state, at the start of each step and at last at the end of the ride."""
-        travel, duration = constants[1], constants[14]
-        told, end = work[0], work[1]
-        if begin:
-            commanded(table, constants, state[ANGLE], state[CRANK], told)
-            for muscle in range(MUSCLES):
-                state[ANSWERS + muscle] = told[muscle]
-            engaged, way = choose(table, constants, state, told, work[2])
-        count = 0
-        while count < len(rows):
-            rows[count, 0], rows[count, 1] = clock, engaged
-            for i in range(STATE):
-                rows[count, 2 + i] = state[i]
-            count += 1
-            if clock >= duration:
-                break
-            # to the next break of the moments, but not across it
-            angle, speed = state[ANGLE] % turn, state[CRANK]
-            row = table[int(angle * cells)]
-            reach = min(STEP_ANGLES[engaged], row[AHEAD] - angle if speed > 0 else angle - row[BEHIND])
-            time = min(STEP_TIME, reach / max(abs(speed), 1e-9), duration - clock)
-            push = step(table, constants, state, engaged, way, time, work[2:], end)
-            if left(constants, end, engaged, way, push):
-                earliest, latest = 0.0, time
-                for _ in range(HALVINGS):
-                    time = (earliest + latest) / 2
-                    push = step(table, constants, state, engaged, way, time, work[2:], end)
-                    if left(constants, end, engaged, way, push):
-                        latest = time
-                    else:
-                        earliest = time
-                time = latest
-                push = step(table, constants, state, engaged, way, time, work[2:], end)
-                if way * end[SPEED] < 0:
-                    end[SPEED] = 0.0
-                    if engaged:
-                        end[CRANK] = 0.0
-                if not engaged and end[CRANK] * travel > end[SPEED]:
-                    end[CRANK] = end[SPEED] / travel
-                engaged, way = choose(table, constants, end, told, work[2])
-            for i in range(STATE):
-                state[i] = end[i]
-            clock += time
-        return count, clock, engaged, way
+@kept_machine_code
+def advance(
+    system: System,
+    state: State,
+    mode: Mode,
+    clock: float,
+    until: float,
+    rows: Any,
+    version: int = sources(CrankInertia, LegTable, Steps),
+) -> tuple[int, State, Mode, float]:
+    """Fill rows with SAMPLE at the start of each step, and at last at the end of the ride.
 
-    result: Callable[..., Any] = advance
-    return result
+    clock: s; at 0 the ride begins, its muscles as they are commanded. Returns how many rows there are, state, mode and
+    clock at their end.
+    """
+    if clock == 0:
+        begun = (state.crank_angle, state.crank_speed, state.distance, state.speed, state.muscle_work, state.road_work)
+        state = State(*begun, commands(system, state.crank_angle, state.crank_speed))
+        mode = mode_of(system, state)
+    count = 0
+    while count < len(rows):
+        rows[count, 0], rows[count, 1] = clock, not mode.engaged
+        rows[count, 2], rows[count, 3], rows[count, 4] = state.crank_angle, state.crank_speed, state.distance
+        rows[count, 5], rows[count, 6], rows[count, 7] = state.speed, state.muscle_work, state.road_work
+        count += 1
+        if clock >= until:
+            break
+        time = min(longest_step(system, state, mode), until - clock)
+        end, push = stepped(system, state, mode, time)
+        if ended(system.vehicle, end, mode, push):
+            end, time = to_event(system, state, mode, time)
+            mode = mode_of(system, end)
+        state = end
+        clock += time
+    return count, state, mode, clock

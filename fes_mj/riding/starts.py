@@ -9,8 +9,8 @@ import numpy as np
 from fes_mj.common.arrays import BoolArray, FloatArray
 from fes_mj.common.units import KMH
 from fes_mj.linkage.design import TRICYCLE_SPEED
-from fes_mj.riding import reduced
 from fes_mj.riding.ride import Ride
+from fes_mj.riding.trace import ride as solved
 
 ANGLES = 72  # crank angles that are tried, over half a turn: the legs are alike, half a turn apart
 FASTEST_LAUNCH = 25 * KMH  # m/s
@@ -51,13 +51,13 @@ class Starts:
 def starts(ride: Ride, angles: int | None = None) -> Starts:
     """Try rides from rest, launches and slopes. angles: crank angles that are tried, over half a turn.
 
-    A faster launch and a gentler slope are taken to do whatever a slower and a steeper one do. Raises InputError as
-    reduced.ride, MissingPartError without numba.
+    A faster launch and a gentler slope are taken to do whatever a slower and a steeper one do. Raises
+    InputError as trace.ride.
     """
     half_turn = np.linspace(0, np.pi, angles or ANGLES, endpoint=False)
 
     def rides(**changes: Any) -> bool:
-        return reduced.ride(replace(ride, **changes), compiled=True).rides
+        return solved(replace(ride, **changes)).rides
 
     works = np.array([rides(launch=0.0, start=angle) for angle in half_turn])
     order = [*half_turn[~works], *half_turn[works]]

@@ -1,30 +1,92 @@
-"""The simulation's inner loop in machine code (numba): the torque map and mj_step by its C address, without Python."""
+"""The simulation's inner loop in machine code (numba): the torque map and mj_step by its C name, without Python.
 
-import ctypes
+Importing this raises MissingPartError without numba.
+"""
+
 import math
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import mujoco
 import numpy as np
 
 from fes_mj.common.arrays import FloatArray
 from fes_mj.common.errors import require_extra
+from fes_mj.common.machine_code import machine_code
 from fes_mj.linkage.joints import JOINTS
 from fes_mj.moments.torque_map import TorqueMap, scalar_map
 from fes_mj.simulation.stepping import FORCE_EVERY, Loop, Records, drive_addresses
 
-# Given what makes machine code of Python functions: the function that sets the controls before each step, called with
-# arguments of its own, the positions, the speeds at the positions' own time, and the controls.
-MakeControl: TypeAlias = Callable[[Callable[[Any], Any]], Callable[..., None]]
+_numba: Any = require_extra("optimize", "numba", "llvmlite")
+
+
+def _library() -> Path:
+    """MuJoCo's shared library, beside its Python bindings."""
+    folder = Path(mujoco.__file__).parent
+    return next(
+        path for pattern in ("libmujoco*.so*", "libmujoco*.dylib", "mujoco.dll") for path in folder.glob(pattern)
+    )
+
+
+require_extra("optimize", "llvmlite.binding").load_library_permanently(str(_library()))
+_address, _flag = _numba.types.intp, _numba.types.int32
+_two = _numba.types.void(_address, _address)
+_step1, _step2, _com_vel = (_numba.types.ExternalFunction(name, _two) for name in ("mj_step1", "mj_step2", "mj_comVel"))
+_rne = _numba.types.ExternalFunction("mj_rne", _numba.types.void(_address, _address, _flag, _address))
+
+
+class Fields(NamedTuple):
+    """What of MjData a loop reads and writes; lead: speeds at the positions' own time, held: those of MuJoCo."""
+
+    qpos: FloatArray
+    qvel: FloatArray
+    qacc: FloatArray
+    qfrc_bias: FloatArray
+    ctrl: FloatArray
+    sensordata: FloatArray
+    efc_force: FloatArray
+    lead: FloatArray
+    held: FloatArray
+
+
+# Steps a model: half a time step, addresses of model and data, arguments of the control, fields, rows of sensors and
+# constraint forces to fill.
+Advance: TypeAlias = Callable[[float, tuple[int, int], Any, Fields, FloatArray, FloatArray], None]
+
+
+@machine_code
+def lead(half: float, fields: Fields) -> None:
+    """Find the speeds at the positions' own time, as in stepping.controlled_loop."""
+    fields.lead[:] = fields.qvel + half * fields.qacc
+
+
+@machine_code
+def step(pointers: tuple[int, int], fields: Fields) -> None:
+    """Step the model, with centrifugal forces of the speeds that `lead` found."""
+    model, data = pointers
+    _step1(model, data)
+    fields.held[:] = fields.qvel
+    fields.qvel[:] = fields.lead
+    _com_vel(model, data)
+    _rne(model, data, 0, fields.qfrc_bias.ctypes.data)
+    fields.qvel[:] = fields.held
+    _step2(model, data)
+
+
+@machine_code
+def record(row: int, fields: Fields, sensor_rows: FloatArray, force_rows: FloatArray) -> None:
+    """Keep the sensors, and of every so many steps the constraint forces."""
+    sensor_rows[row] = fields.sensordata
+    if len(force_rows) and not row % FORCE_EVERY:
+        force_rows[row // FORCE_EVERY] = fields.efc_force
 
 
 def compiled_loop(torque: TorqueMap, drives: dict[str, str]) -> Loop:
     """The loop of stepping.feedback_loop for the drives (joint name -> "knee" or "hip") under a torque map.
 
-    It releases Python's lock: loops run side by side in threads. Raises MissingPartError without numba.
+    It releases Python's lock: loops run side by side in threads.
     """
     if torque.moments.torque_velocity is not None:
         raise ValueError("the compiled loop takes moments that do not depend on speed")
@@ -36,17 +98,16 @@ def compiled_loop(torque: TorqueMap, drives: dict[str, str]) -> Loop:
     def arguments(model: mujoco.MjModel) -> tuple[Any, ...]:
         return np.array([drive_addresses(model, name) for name in drives]), kinds, knee, hip
 
-    return compiled_controlled_loop(_map_control, arguments, forces=True)
+    return compiled_controlled_loop(_map_advance(), arguments, forces=True)
 
 
 def compiled_controlled_loop(
-    make_control: MakeControl, arguments: Callable[[mujoco.MjModel], tuple[Any, ...]], forces: bool
+    advance: Advance, arguments: Callable[[mujoco.MjModel], tuple[Any, ...]], forces: bool
 ) -> Loop:
-    """The loop of stepping.controlled_loop in machine code.
+    """The loop of stepping.controlled_loop around `advance`, which is in machine code.
 
-    arguments: of the control, for a model. forces: record the constraint forces, whose number must not change.
+    arguments: of its control, for a model. forces: record the constraint forces, whose number must not change.
     """
-    advance = _advance(make_control)
 
     def loop(model: mujoco.MjModel, data: mujoco.MjData, count: int) -> tuple[FloatArray, Records]:
         acceleration = data.qacc.copy()  # of the step before, which the next one needs
@@ -55,9 +116,10 @@ def compiled_controlled_loop(
         force = data.efc_force if forces else np.empty(0)
         sensor_rows = np.empty((count + 1, model.nsensordata))
         force_rows = np.empty((-(-count // FORCE_EVERY) if forces else 0, len(force)))
-        state = (data.qpos, data.qvel, data.qacc, data.qfrc_bias, data.ctrl, data.sensordata, force)
+        lead, held = np.empty((2, model.nv))
+        fields = Fields(data.qpos, data.qvel, data.qacc, data.qfrc_bias, data.ctrl, data.sensordata, force, lead, held)
         pointers = (model._address, data._address)
-        advance(model.opt.timestep / 2, pointers, arguments(model), state, (sensor_rows, force_rows))
+        advance(model.opt.timestep / 2, pointers, arguments(model), fields, sensor_rows, force_rows)
         if forces and data.efc_force.ctypes.data != force.ctypes.data:
             raise AssertionError("MuJoCo moved its constraint forces during a run")
         return sensor_rows, {"efc_force": force_rows} if forces else {}
@@ -65,16 +127,17 @@ def compiled_controlled_loop(
     return loop
 
 
-def _map_control(compiled: Callable[[Any], Any]) -> Callable[..., None]:
-    """Moments of the torque map."""
+@cache
+def _map_advance() -> Advance:
+    """Steps under the moments of the torque map."""
 
-    @compiled
+    @machine_code
     def acos(value: float) -> float:
         return math.acos(min(1.0, max(-1.0, value)))
 
-    knee_map, hip_map = (scalar_map(joint, acos, compiled) for joint in JOINTS)
+    knee_map, hip_map = (scalar_map(joint, acos, machine_code) for joint in JOINTS)
 
-    @compiled
+    @machine_code
     def control(arguments: Any, qpos: Any, speeds: Any, ctrl: Any) -> None:
         addresses, kinds, knee, hip = arguments
         for drive in range(len(kinds)):
@@ -84,47 +147,12 @@ def _map_control(compiled: Callable[[Any], Any]) -> Callable[..., None]:
             else:
                 ctrl[actuator] = hip_map(hip[0], hip[1], qpos[position], speeds[speed])
 
-    result: Callable[..., None] = control
-    return result
-
-
-@cache
-def _advance(make_control: MakeControl) -> Callable[..., None]:
-    njit: Any = require_extra("optimize", "numba").njit
-    library, address = ctypes.CDLL(str(_library())), ctypes.c_ssize_t
-    first, second, velocities, bias_force = library.mj_step1, library.mj_step2, library.mj_comVel, library.mj_rne
-    for function in (first, second, velocities, bias_force):
-        function.argtypes, function.restype = (address, address), None
-    bias_force.argtypes = (address, address, ctypes.c_int, address)
-    control = make_control(njit)
-
-    @njit(nogil=True)  # type: ignore[untyped-decorator]
-    def advance(half: float, pointers: Any, arguments: Any, state: Any, records: Any) -> None:
-        model, data = pointers
-        qpos, qvel, acceleration, bias, ctrl, sensors, forces = state
-        sensor_rows, force_rows = records
-        held, lead = np.empty(len(qvel)), np.empty(len(qvel))
+    @machine_code
+    def advance(half: float, pointers: Any, arguments: Any, fields: Any, sensor_rows: Any, force_rows: Any) -> None:
         for row in range(len(sensor_rows) - 1):
-            lead[:] = qvel + half * acceleration  # as in stepping.controlled_loop
-            control(arguments, qpos, lead, ctrl)
-            first(model, data)
-            held[:] = qvel
-            qvel[:] = lead
-            velocities(model, data)
-            bias_force(model, data, 0, bias.ctypes.data)
-            qvel[:] = held
-            second(model, data)
-            sensor_rows[row] = sensors
-            if len(force_rows) and not row % FORCE_EVERY:
-                force_rows[row // FORCE_EVERY] = forces
+            lead(half, fields)
+            control(arguments, fields.qpos, fields.lead, fields.ctrl)
+            step(pointers, fields)
+            record(row, fields, sensor_rows, force_rows)
 
-    compiled: Callable[..., None] = advance
-    return compiled
-
-
-def _library() -> Path:
-    """MuJoCo's shared library, beside its Python bindings."""
-    folder = Path(mujoco.__file__).parent
-    return next(
-        path for pattern in ("libmujoco*.so*", "libmujoco*.dylib", "mujoco.dll") for path in folder.glob(pattern)
-    )
+    return advance

@@ -1,8 +1,8 @@
-"""The ride in MuJoCo: run, and told as the reduced model tells it."""
+"""The ride in MuJoCo: run, and described as the reduced model describes it."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 import mujoco
 import numpy as np
@@ -10,9 +10,12 @@ from scipy.integrate import cumulative_trapezoid
 
 from fes_mj.common.arrays import FloatArray
 from fes_mj.linkage.legs import TWO_LEGS
-from fes_mj.riding.ride import Ride, Trace
+from fes_mj.riding.ride import Ride
+from fes_mj.riding.trace import Trace
+from fes_mj.simulation.appearance import Spec
 from fes_mj.simulation.bench import joint_drives
-from fes_mj.simulation.road_control import road_loop
+from fes_mj.simulation.road_control import road_control
+from fes_mj.simulation.road_loop import MakeControl, road_loop
 from fes_mj.simulation.road_mjcf import DRIVETRAIN, ROAD, TIMESTEP, build_road_mjcf, start_state
 from fes_mj.simulation.sensors import Sensors
 from fes_mj.simulation.stepping import PRE_ROLL, Loop, Run, run_loop
@@ -72,15 +75,24 @@ class RoadRun:
         return max(float(np.linalg.norm(self.sensors.vector(gap), axis=1).max()) for gap in gaps)
 
 
-def ride_on_road(ride: Ride, timestep: float = TIMESTEP, make_loop: Callable[[Ride], Loop] | None = None) -> RoadRun:
-    """Ride in MuJoCo. make_loop: another than road_loop, which steps in Python.
+def ride_on_road(
+    ride: Ride,
+    timestep: float = TIMESTEP,
+    *,
+    edit: Callable[[Spec], None] = lambda _: None,
+    control: MakeControl | None = None,
+    make_loop: Callable[[MakeControl], Loop] = road_loop,
+) -> RoadRun:
+    """Ride in MuJoCo.
 
-    Raises InputError as reduced.ride, UnstableError if the integration breaks down.
+    edit: changes the model before it is compiled. control: another than road_control. make_loop: another loop than
+    road_loop. Raises InputError as trace.ride, UnstableError if the integration breaks down.
     """
     for leg in TWO_LEGS:
         turning_in_range(ride.design, ride.moments.of_leg(leg.prefix).measured_on)
-    model = build_road_mjcf(ride, timestep, drawn=False).compile()
-    loop = (make_loop or road_loop)(ride)
+    spec = build_road_mjcf(ride, timestep, drawn=False)
+    edit(spec)
+    model, loop = spec.compile(), make_loop(control or partial(road_control, ride))
     _start_half_a_step_early(model, ride)
     if ride.launch:
         probe = Sensors(model, run_loop(model, loop, PRE_ROLL, pre_roll=0).sensors)

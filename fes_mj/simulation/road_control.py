@@ -1,99 +1,98 @@
-"""What the rider's muscles and the freewheel do in each step of a ride: in Python, and in machine code."""
+"""What the rider's muscles and the freewheel do in each step of a ride in MuJoCo."""
 
 import math
-from collections.abc import Callable
-from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 import mujoco
 import numpy as np
 
-from fes_mj.linkage.joints import JOINTS
+from fes_mj.common.arrays import FloatArray, IntArray
+from fes_mj.common.machine_code import machine_code
 from fes_mj.linkage.legs import TWO_LEGS
-from fes_mj.moments.drive import POINTS, drive
-from fes_mj.moments.torque_velocity import AT_ANY_SPEED, hill_factor
+from fes_mj.moments.drive import drive
+from fes_mj.moments.muscle_response import MUSCLES, Response, between, delivered, lead, place
 from fes_mj.riding.ride import Ride
-from fes_mj.simulation.compiled import compiled_controlled_loop
 from fes_mj.simulation.road_mjcf import ROAD
-from fes_mj.simulation.stepping import Loop, controlled_loop, drive_addresses
+from fes_mj.simulation.stepping import drive_addresses
 
 
-def road_loop(ride: Ride) -> Loop:
-    """Joint moments commanded by crank angle, and the freewheel's limit kept at the length reached; steps in Python."""
-    control = make_control(lambda function: function)
+class RoadControl(NamedTuple):
+    """What the control knows of a ride and its model; arrays by MUSCLES.
 
-    def bound(model: mujoco.MjModel, data: mujoco.MjData, speeds: Any) -> Callable[[], None]:
-        arrays = [each.tolist() if isinstance(each, np.ndarray) else each for each in control_arguments(ride, model)]
-        arguments = (memoryview(model.tendon_range.reshape(-1)), *arrays[1:])
-        position, ctrl = memoryview(data.qpos), memoryview(data.ctrl)
-        return partial(control, arguments, position, speeds, ctrl)
+    travel: m/rad. road, crank, crank_speed: addresses of the joints' positions and of a speed; so joint_speed and, of
+    the motors, actuator. leg_lag: rad. command: N m over a turn of the own leg's crank, shape (4, POINTS + 1). kept:
+    part of the distance to its command that a muscle's answer keeps in a step.
+    """
 
-    return controlled_loop(bound)
+    fixed: bool
+    travel: float
+    road: int
+    crank: int
+    crank_speed: int
+    actuator: IntArray
+    joint_speed: IntArray
+    leg_lag: FloatArray
+    command: FloatArray
+    response: Response
+    kept: float
 
 
-def compiled_road_loop(ride: Ride) -> Loop:
-    """The same in machine code. Raises MissingPartError without numba."""
-    return compiled_controlled_loop(make_control, partial(control_arguments, ride), forces=False)
+class Memory(NamedTuple):
+    """What changes from step to step. limit: range of the tendon from road to crank, rad, of which the first moves.
+
+    answer, command: moments at rest by MUSCLES, N m; NaN before the first step.
+    """
+
+    limit: FloatArray
+    answer: FloatArray
+    command: FloatArray
 
 
-def control_arguments(ride: Ride, model: mujoco.MjModel) -> tuple[Any, ...]:
-    """What the control of make_control needs beside the state: arrays, and memory from step to step."""
-    told = {leg: drive(ride.design, ride.moments.of_leg(leg.prefix), ride.lag) for leg in TWO_LEGS}
-    relation = ride.moments.torque_velocity or AT_ANY_SPEED
-    muscles = [(leg, joint) for leg in TWO_LEGS for joint in JOINTS]
-    addresses = [drive_addresses(model, leg.prefix + joint) for leg, joint in muscles]
+def road_control(ride: Ride, model: mujoco.MjModel) -> RoadControl:
+    """The control of a ride in its model."""
+    drives = {leg: drive(ride.design, ride.moments.of_leg(leg.prefix), ride.lag) for leg in TWO_LEGS}
+    commands = [drives[leg].command[joint] for leg, joint in MUSCLES]
+    actuators, _, speeds = np.array([drive_addresses(model, leg.prefix + joint) for leg, joint in MUSCLES]).T.copy()
     crank = model.joint("crank")
-    lag, step = ride.lag, model.opt.timestep
-    return (
-        model.tendon_range.reshape(-1),
-        np.array([model.joint(ROAD).qposadr[0], crank.qposadr[0], crank.dofadr[0]]),
-        np.array([actuator for actuator, _, _ in addresses]),
-        np.array([speed for _, _, speed in addresses]),
-        np.array([POINTS / (2 * math.pi) * leg.lag for leg, _ in muscles]),
-        np.array([relation.max_speed[joint] for _, joint in muscles]),
-        np.array([np.append(told[leg].command[joint], told[leg].command[joint][0]) for leg, joint in muscles]),
-        np.array(
-            [
-                float(ride.fixed),
-                ride.travel,
-                lag,
-                ride.moments.measured_on.cadence,
-                math.exp(-step / lag) if lag else 0.0,
-                relation.curvature,
-                relation.eccentric_plateau,
-            ]
-        ),
-        np.full(2 * len(muscles), np.nan),  # answers and commands of the step before
+    return RoadControl(
+        fixed=ride.fixed,
+        travel=ride.travel,
+        road=int(model.joint(ROAD).qposadr[0]),
+        crank=int(crank.qposadr[0]),
+        crank_speed=int(crank.dofadr[0]),
+        actuator=actuators,
+        joint_speed=speeds,
+        leg_lag=np.array([leg.lag for leg, _ in MUSCLES]),
+        command=np.array([np.append(command, command[0]) for command in commands]),
+        response=Response.of(ride.moments, ride.lag),
+        kept=math.exp(-model.opt.timestep / ride.lag) if ride.lag else 0.0,
     )
 
 
-def make_control(compiled: Callable[[Any], Any]) -> Callable[..., None]:
-    """Sets the moments and the freewheel. compiled: what makes machine code of Python functions, if anything."""
-    hill, cells = compiled(hill_factor), POINTS / (2 * math.pi)
+def memory_of(model: mujoco.MjModel) -> Memory:
+    """That of a ride that begins."""
+    return Memory(model.tendon_range.reshape(-1), *np.full((2, len(MUSCLES)), np.nan))
 
-    @compiled
-    def control(arguments: Any, qpos: Any, speeds: Any, ctrl: Any) -> None:
-        limit, places, actuators, joints, behind, fastest, tables, constants, memory = arguments
-        fixed, travel, lag, measured, kept, curvature, plateau = constants
-        angle, count = qpos[places[1]], len(actuators)
-        if not fixed:
-            limit[0] = max(limit[0], qpos[places[0]] / travel - angle)
-        if lag > 0:
-            angle += math.atan(speeds[places[2]] * lag) - math.atan(measured * lag)
-        for muscle in range(count):
-            place = (cells * angle - behind[muscle]) % POINTS
-            row = int(place)
-            table = tables[muscle]
-            told = table[row] + (place - row) * (table[row + 1] - table[row])
-            moment = told
-            if lag > 0:
-                if memory[muscle] == memory[muscle]:  # exact for a command that stays at its mean over the step
-                    mean = (memory[count + muscle] + told) / 2
-                    moment = mean + kept * (memory[muscle] - mean)
-                memory[muscle], memory[count + muscle] = moment, told
-            relative = (speeds[joints[muscle]] if moment > 0 else -speeds[joints[muscle]]) / fastest[muscle]
-            shortening, lengthening = min(max(relative, 0.0), 1.0), max(-relative, 0.0)
-            ctrl[actuators[muscle]] = moment * hill(curvature, plateau, shortening, lengthening)
 
-    result: Callable[..., None] = control
-    return result
+@machine_code
+def act(control: RoadControl, memory: Memory, qpos: Any, speeds: Any, ctrl: Any) -> None:
+    """Set the moments, and keep the freewheel's limit at the length reached.
+
+    qpos, speeds: positions, and speeds at their own time. ctrl: of the motors, N m.
+    """
+    angle, response = qpos[control.crank], control.response
+    if not control.fixed:
+        memory.limit[0] = max(memory.limit[0], qpos[control.road] / control.travel - angle)
+    ahead = angle + lead(response, speeds[control.crank_speed])
+    for muscle in range(len(memory.answer)):
+        curve = control.command[muscle]
+        row, part = place(ahead - control.leg_lag[muscle], len(curve) - 1)
+        moment = command = between(curve, row, part)
+        if response.lag > 0:
+            answer, before = memory.answer[muscle], memory.command[muscle]
+            if not math.isnan(answer):  # exact for a command that stays at its mean over the step
+                mean = (before + command) / 2
+                moment = mean + control.kept * (answer - mean)
+            memory.answer[muscle], memory.command[muscle] = moment, command
+        rate = speeds[control.joint_speed[muscle]]
+        ctrl[control.actuator[muscle]] = delivered(response, muscle, moment, rate)

@@ -8,8 +8,8 @@ import pytest
 import fes_mj
 from fes_mj.crosscheck.ride_case import RideCase
 from fes_mj.moments.torque_velocity import load_torque_velocity
-from fes_mj.riding import reduced
 from fes_mj.riding.ride import Ride, Road, balancing_slope
+from fes_mj.riding.trace import ride as ride_by_equation
 
 P1P2 = fes_mj.load_moments("p1p2")
 HILL = replace(P1P2, torque_velocity=load_torque_velocity("hill"))
@@ -38,23 +38,7 @@ def test_d1_stops_on_the_slope_that_its_mean_power_climbs() -> None:
     assert case.agrees
     assert case.summary()["stopped_at_s"] == pytest.approx(case.reference.stopped_at, abs=0.05)
     fixed = replace(case.ride, transmission="fixed", duration=12.0)
-    assert reduced.ride(fixed).rides
-
-
-@pytest.mark.parametrize(
-    ("column", "value"), [(reduced.RECOIL, 0.0), (reduced.INERTIA, 0.5), (reduced.COMMANDS + 1, 0.0)]
-)
-def test_a_wrong_reference_is_seen(column: int, value: float, monkeypatch: pytest.MonkeyPatch) -> None:
-    right = reduced.leg_table
-
-    def wrong(*arguments: object) -> object:
-        table = right(*arguments).copy()  # type: ignore[arg-type]
-        table[:, column] *= value
-        return table
-
-    monkeypatch.setattr(reduced, "leg_table", wrong)
-    case = RideCase(Ride(fes_mj.load_design("d1"), HILL, transmission="fixed", duration=2.0))
-    assert not case.agrees
+    assert ride_by_equation(fixed).rides
 
 
 def test_the_balancing_slope_balances(design: fes_mj.Design) -> None:

@@ -10,8 +10,8 @@ from fes_mj.common.units import KMH
 from fes_mj.moments.torque_velocity import load_torque_velocity
 from fes_mj.paper import riding
 from fes_mj.paper.printed import table1
-from fes_mj.riding import reduced
 from fes_mj.riding.ride import Ride, Road
+from fes_mj.riding.trace import ride as solved
 
 PAGE = json.loads((Path(__file__).parents[2] / "results" / "reproduction.json").read_text(encoding="utf-8"))["riding"]
 SPEEDS = {
@@ -31,14 +31,14 @@ def test_d1_on_the_slope_that_its_mean_power_climbs(transmission: str, rides: bo
     moments = load_moments().at_speed(load_torque_velocity("hill"))
     road = Road(slope=row["slope, %"] / 100)
     ride = Ride(load_design("d1"), moments, road=road, transmission=transmission, duration=20.0)
-    assert reduced.ride(ride).rides is rides
+    assert solved(ride).rides is rides
     assert (row["on this slope"] == "rides") is rides
 
 
 def test_a_row_is_what_a_ride_alone_says() -> None:
     row = SPEEDS["TRT", "p1p3", "fixed"]
     ride = Ride(load_design("trt"), load_moments("p1p3").at_speed(load_torque_velocity("hill")), transmission="fixed")
-    speed = reduced.ride(ride).mean_speed
+    speed = solved(ride).mean_speed
     assert speed is not None
     assert row["speed, km/h"].startswith(f"{speed / KMH:.1f} +- ")
 

@@ -8,11 +8,9 @@ import pytest
 
 import fes_mj
 from fes_mj.moments.torque_velocity import load_torque_velocity
-from fes_mj.riding.reduced import leg_table
 from fes_mj.riding.ride import Ride, Road
-from fes_mj.riding.solver import INERTIA, RECOIL
 from fes_mj.simulation.road import ride_on_road
-from fes_mj.simulation.road_control import compiled_road_loop
+from fes_mj.simulation.road_loop import interpreted_road_loop
 from fes_mj.simulation.road_mjcf import build_road_mjcf
 
 HILL = replace(fes_mj.load_moments("p1p2"), torque_velocity=load_torque_velocity("hill"))
@@ -37,13 +35,14 @@ def test_mass_and_recoil_are_those_of_the_equation_of_motion(design: fes_mj.Desi
     model = build_road_mjcf(ride).compile()
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, 0)
-    row = [np.interp(0.7, np.linspace(0, 2 * np.pi, 3601), leg_table(design, HILL)[:, i]) for i in (INERTIA, RECOIL)]
+    masses, turn = ride.table.masses, np.linspace(0, 2 * np.pi, 3601)
+    inertia, recoil = (np.interp(0.7, turn, curve) for curve in (masses.inertia, masses.recoil))
     crank = ride.launch / ride.travel
     for speed in (0.0, ride.launch):
         data.qvel[model.joint("road").dofadr[0]] = speed
         mujoco.mj_forward(model, data)
         mujoco.mj_energyVel(model, data)
-        expected = row[0] * crank**2 / 2 - row[1] * crank * speed + ride.load.inertia * speed**2 / 2
+        expected = inertia * crank**2 / 2 - recoil * crank * speed + ride.load.inertia * speed**2 / 2
         assert data.energy[1] == pytest.approx(expected, rel=1e-5)
 
 
@@ -62,5 +61,5 @@ def test_at_rest_nothing_creeps() -> None:
 def test_machine_code_rides_the_same_way_bit_for_bit(lag: float) -> None:
     pytest.importorskip("numba")
     ride = Ride(fes_mj.load_design("r2"), HILL, duration=1.0, lag=lag)
-    slow, fast = ride_on_road(ride), ride_on_road(ride, make_loop=compiled_road_loop)
+    fast, slow = ride_on_road(ride), ride_on_road(ride, make_loop=interpreted_road_loop)
     assert np.array_equal(slow.run.sensors, fast.run.sensors)

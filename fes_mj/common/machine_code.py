@@ -1,0 +1,62 @@
+"""Functions in machine code where numba is installed (extra `optimize`); elsewhere Python runs the same functions."""
+
+import hashlib
+import sys
+from collections.abc import Callable
+from importlib import import_module
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any, TypeVar, cast
+
+import numpy as np
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+Value = TypeVar("Value")
+
+COMPILED = find_spec("numba") is not None
+_files: set[str] = set()  # in which functions of machine code stand
+
+
+def machine_code(function: Function) -> Function:
+    """The function in machine code, made when it is first called or a caller's is made."""
+    _files.add(function.__code__.co_filename)
+    return _njit(function)
+
+
+def kept_machine_code(function: Function) -> Function:
+    """The same, kept on disk between processes: of a function that Python calls.
+
+    Its machine code holds that of every function it calls, but numba looks for changes in its own file alone. So it
+    takes a last argument with the default `sources(...)`, which is a part of the key under which numba keeps it.
+    """
+    try:
+        return _njit(function, cache=True)
+    except RuntimeError:  # nowhere to write to: made anew by every process
+        return _njit(function)
+
+
+def sources(*structures: type) -> int:
+    """Digest of the files in which the functions made so far stand, and the named tuples that they are given."""
+    files = _files | {str(sys.modules[structure.__module__].__file__) for structure in structures}
+    digest = hashlib.sha256(b"".join(Path(file).read_bytes() for file in sorted(files)))
+    return int.from_bytes(digest.digest()[:7])
+
+
+def _njit(function: Function, **options: bool) -> Function:
+    if not COMPILED:
+        return function
+    made: Function = import_module("numba").njit(nogil=True, **options)(function)
+    return made
+
+
+def readable(value: Value) -> Value:
+    """A named tuple of arrays as these functions read it: lists in their place for Python, ten times faster."""
+    return value if COMPILED else _in_lists(value)
+
+
+def _in_lists(value: Value) -> Value:
+    if isinstance(value, np.ndarray):
+        return cast("Value", value.tolist())
+    if isinstance(value, tuple) and hasattr(value, "_fields"):
+        return cast("Value", type(value)(*map(_in_lists, value)))
+    return value

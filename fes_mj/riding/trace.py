@@ -1,0 +1,200 @@
+"""What becomes of a ride: its trace, whoever solved it, and the ride by the reduced equation of motion (solver)."""
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from fes_mj.common.arrays import BoolArray, FloatArray
+from fes_mj.common.errors import UnstableError
+from fes_mj.common.machine_code import readable
+from fes_mj.common.units import KMH, RPM
+from fes_mj.linkage.legs import TWO_LEGS
+from fes_mj.riding.ride import Ride
+from fes_mj.statics.extrapolation import turning_in_range
+
+LAST_TURNS = 5  # whole turns at the end, over which a ride is described
+# A tricycle that is no faster than this at the end, or this far back from where it had come, does not ride. Dry
+# friction stops it within a hundredth of a second of the former.
+LEAST_SPEED, LEAST_ADVANCE = 1e-3, 1e-5  # m/s, m
+ROWS = 4096  # samples that are made before Python looks at them
+MOST_ROWS = 2**21  # an hour of fast riding; beyond it something is wrong
+
+
+@dataclass(frozen=True, eq=False)
+class Trace:
+    """What became of a ride, sampled in time; arrays of shape (samples,).
+
+    time: s. crank_angle: rad, running on. crank_speed: rad/s. distance: m. speed: of the tricycle, m/s. coasting:
+    whether the freewheel lets the wheel run ahead. muscle_work: by all joint moments since the start, J. road_work:
+    against rolling resistance, air and slope since the start, J.
+    """
+
+    ride: Ride
+    time: FloatArray
+    crank_angle: FloatArray
+    crank_speed: FloatArray
+    distance: FloatArray
+    speed: FloatArray
+    coasting: BoolArray
+    muscle_work: FloatArray
+    road_work: FloatArray
+
+    @cached_property
+    def rides(self) -> bool:
+        """Whether the tricycle still goes forward at the end, farther than it ever was."""
+        return bool(self.speed[-1] > LEAST_SPEED and self.distance[-1] > self.distance.max() - LEAST_ADVANCE)
+
+    @cached_property
+    def stop(self) -> int | None:
+        """Sample at which it had come as far as it ever came; None if it rides."""
+        return None if self.rides else int(np.argmax(self.distance > self.distance.max() - LEAST_ADVANCE))
+
+    @property
+    def stopped_at(self) -> float | None:
+        """The time of this, s."""
+        return None if self.stop is None else float(self.time[self.stop])
+
+    @property
+    def turns(self) -> float:
+        """Turns of the crank until the end, or until it stopped."""
+        end = -1 if self.stop is None else self.stop
+        return float(self.crank_angle[end] - self.crank_angle[0]) / (2 * np.pi)
+
+    @property
+    def coasting_share(self) -> float:
+        """Share of the time in which the freewheel runs free, until it stopped."""
+        moving = self.time[: self.stop] if self.stop else self.time
+        if len(moving) < 2:
+            return 0.0
+        steps = np.diff(moving)
+        return float(steps @ self.coasting[: len(steps)] / steps.sum())
+
+    @cached_property
+    def whole_turns(self) -> int:
+        """Turns at the end over which a ride is described; 0 if it stopped or made none."""
+        return min(LAST_TURNS, math.floor(self.turns)) if self.rides else 0
+
+    @cached_property
+    def last_turns(self) -> slice:
+        """The samples of these turns."""
+        begin = self.crank_angle[-1] - 2 * np.pi * self.whole_turns
+        return slice(int(np.argmax(self.crank_angle >= begin)), None)
+
+    def ends(self, column: FloatArray) -> tuple[float, float]:
+        """Values of a column at the begin of these turns, between two samples, and at their end."""
+        begin, first = self.crank_angle[-1] - 2 * np.pi * self.whole_turns, self.last_turns.start
+        near = slice(max(0, first - 1), first + 1)
+        return float(np.interp(begin, self.crank_angle[near], column[near])), float(column[-1])
+
+    def mean(self, cumulative: FloatArray) -> float | None:
+        """Mean rate of something that adds up, over these turns; None without any."""
+        if not self.whole_turns:
+            return None
+        (began, ended), (first, last) = self.ends(self.time), self.ends(cumulative)
+        return (last - first) / (ended - began)
+
+    @property
+    def mean_speed(self) -> float | None:
+        """Of the tricycle over the last whole turns, m/s."""
+        return self.mean(self.distance)
+
+    @property
+    def cadence(self) -> float | None:
+        """Mean crank speed over the last whole turns, rad/s."""
+        return self.mean(self.crank_angle)
+
+    @property
+    def ripple(self) -> float | None:
+        """Largest less smallest crank speed over the last whole turns, per its mean."""
+        cadence = self.cadence
+        return None if cadence is None else float(np.ptp(self.crank_speed[self.last_turns])) / cadence
+
+    @property
+    def muscle_power(self) -> float | None:
+        """Mean power of all joint moments over the last whole turns, W."""
+        return self.mean(self.muscle_work)
+
+    @property
+    def road_power(self) -> float | None:
+        """Mean power that the road takes over the last whole turns, W."""
+        return self.mean(self.road_work)
+
+    @property
+    def gained_power(self) -> float | None:
+        """Rate at which kinetic energy grows over the last whole turns, W; height returns. None without any turn."""
+        if not self.whole_turns:
+            return None
+        masses = self.ride.table.masses
+        row = int(self.crank_angle[-1] % (2 * np.pi) * (len(masses.inertia) - 1) / (2 * np.pi))
+        crank, speed = (np.array(self.ends(column)) for column in (self.crank_speed, self.speed))
+        kinetic = (masses.inertia[row] * crank**2 + self.ride.load.inertia * speed**2) / 2
+        kinetic -= masses.recoil[row] * crank * speed
+        began, ended = self.ends(self.time)
+        return float(kinetic[1] - kinetic[0]) / (ended - began)
+
+    def summary(self) -> dict[str, Any]:
+        """The result as JSON names and units it."""
+        ride, relation = self.ride, self.ride.moments.torque_velocity
+        speed, cadence = self.mean_speed, self.cadence
+        return {
+            "design": ride.design.name,
+            "group": ride.moments.name,
+            "torque_velocity": relation.name if relation else None,
+            "transmission": ride.transmission,
+            "slope_percent": 100 * ride.road.slope,
+            "lag_s": ride.lag,
+            "launch_kmh": ride.launch / KMH,
+            "start_deg": math.degrees(ride.start),
+            "duration_s": ride.duration,
+            "rides": self.rides,
+            "speed_kmh": None if speed is None else speed / KMH,
+            "cadence_rpm": None if cadence is None else cadence / RPM,
+            "speed_ripple": self.ripple,
+            "distance_m": float(self.distance.max()),
+            "freewheel_share": self.coasting_share,
+            "stopped_at_s": self.stopped_at,
+            "turns": self.turns,
+            "power_muscle_W": self.muscle_power,
+            "power_road_W": self.road_power,
+        }
+
+
+class Steps(NamedTuple):
+    """Longest steps of the equation of motion: crank running free or engaged, rad, and where it is slow, s.
+
+    A quarter of the default changes the speed of the paper's designs after a minute by less than 1e-4 of itself.
+    """
+
+    free: float = math.radians(1.0)
+    engaged: float = math.radians(2.0)
+    time: float = 0.008
+
+
+DEFAULT_STEPS = Steps()
+
+
+def ride(ride: Ride, steps: Steps = DEFAULT_STEPS) -> Trace:
+    """Ride without MuJoCo, by the reduced equation of motion.
+
+    Raises InputError for a linkage that does not turn and for joints that never enter the moments' range, UnstableError
+    where the equation cannot be integrated.
+    """
+    from fes_mj.riding import solver  # with numba, which takes a second to import
+
+    for leg in TWO_LEGS:
+        turning_in_range(ride.design, ride.moments.of_leg(leg.prefix).measured_on)
+    system = readable(solver.system(ride, steps))
+    start = float(ride.start), ride.launch / ride.travel, 0.0, float(ride.launch), 0.0, 0.0, (0.0, 0.0, 0.0, 0.0)
+    state, mode, clock, until = solver.State(*start), solver.Mode(True, 0), 0.0, float(ride.duration)
+    blocks = []
+    while clock < until:
+        rows = np.empty((ROWS, len(solver.SAMPLE)))
+        count, state, mode, clock = solver.advance(system, state, mode, clock, until, rows)
+        blocks.append(rows[:count])
+        if len(blocks) * ROWS > MOST_ROWS or not math.isfinite(state.speed):
+            raise UnstableError(f"{ride.name}: the reduced equation of motion could not be integrated")
+    columns = dict(zip(solver.SAMPLE, np.vstack(blocks).T, strict=True))
+    return Trace(ride, **columns | {"coasting": columns["coasting"] > 0})
