@@ -13,8 +13,8 @@ from fes_mj.common.markdown import Table
 from fes_mj.common.parallel import Workers
 from fes_mj.common.provenance import provenance
 from fes_mj.common.writing import json_text, write_text
-from fes_mj.fit.population import study_population
-from fes_mj.fit.seat import Seats, best_seats, fit, seat_text
+from fes_mj.fit.population import fit_population
+from fes_mj.fit.seat import Seats, best_seats, fit_seat, seat_text
 from fes_mj.linkage.design import Design, Rider
 from fes_mj.linkage.design_file import design_toml, load_design
 from fes_mj.linkage.joints import PerJoint
@@ -75,9 +75,9 @@ def problem(target: str, statistic: str) -> Problem:
 
 def row(made_for: str, design: Design, printed: Design) -> Row:
     """Measure a design."""
-    study = study_population(design, MOMENTS, samples=SAMPLES, seed=SAMPLE_SEED)
-    powers = np.concatenate([np.nan_to_num(each.fitted) for each in study.riders.values()])
-    paper = fit(design, Rider(), MOMENTS)
+    population = fit_population(design, MOMENTS, samples=SAMPLES, seed=SAMPLE_SEED)
+    powers = np.concatenate([np.nan_to_num(each.fitted) for each in population.riders.values()])
+    paper = fit_seat(design, Rider(), MOMENTS)
     own = {key: value for key, value in paper.summary().items() if key.startswith("power")}
     content = {
         "design": design.name,
@@ -85,12 +85,12 @@ def row(made_for: str, design: Design, printed: Design) -> Row:
         "power_people_mean_W": float(powers.mean()),
         "power_people_p10_W": float(np.percentile(powers, 10)),
         "can_ride": float(np.mean(powers > 0)),
-        "can_ride_as_drawn": float(np.mean([np.isfinite(each.unmoved).mean() for each in study.riders.values()])),
+        "can_ride_as_drawn": float(np.mean([np.isfinite(each.unmoved).mean() for each in population.riders.values()])),
         "power_paper_rider_fitted_W": own["power_mean_W"],
         "power_paper_rider_drawn_W": own["power_unmoved_W"],
         "paper_rider_seat": seat_text(paper.seat),
         **{f"{joint}_speed_max_deg_s": float(each.max()) for joint, each in fitted_speeds(design).items()},
-        "map_error_W": study.map_error,
+        "map_error_W": population.map_error,
     }
     return Row(made_for, design, assess(design, printed, MOMENTS), content)
 

@@ -16,9 +16,8 @@ from fes_mj.common.console import conclude, print_table, progress_bar, say
 from fes_mj.common.errors import InputError, require_extra
 from fes_mj.common.text import printable
 from fes_mj.common.writing import json_text, replacing, require_writable, write_text
-from fes_mj.fit.seat import Fit, fit as best_fit, seat_text
+from fes_mj.fit.seat import SeatFit, fit_seat, seat_text
 from fes_mj.linkage.design_file import design_toml, load_design
-from fes_mj.statics.turn import QuasiStatic
 
 if TYPE_CHECKING:
     from fes_mj.fit.seat import SeatLimits
@@ -74,7 +73,7 @@ def fit(
     _refuse({"--samples": samples, "--seed": seed, "--plot": plot}, "is of a population; it needs --population")
     if out:
         require_writable(out, "the design", ".toml", inputs)
-    result = best_fit(loaded, who.load(loaded), joint_moments, limits)
+    result = fit_seat(loaded, who.load(loaded), joint_moments, limits)
     if out and result.fits:
         write_text(out, design_toml(result.design, _origin(result)))
     if options.json:
@@ -94,7 +93,7 @@ def _refuse(given: dict[str, Any], why: str) -> None:
             raise InputError(f"{name} {why}")
 
 
-def _origin(result: Fit) -> str:
+def _origin(result: SeatFit) -> str:
     """Comment of the design file."""
     rider = result.rider
     return printable(
@@ -103,11 +102,11 @@ def _origin(result: Fit) -> str:
     )
 
 
-def _print(result: Fit) -> None:
+def _print(result: SeatFit) -> None:
     summary, rider = result.summary(), result.rider
     legs = f"thigh {100 * rider.thigh:.1f}, shank {100 * rider.shank:.1f} cm, {rider.mass:.1f} kg"
     rows = [("seat", seat_text(result.seat)), ("seat angle, deg", f"{summary['seat_angle_deg']:.1f}")]
-    if isinstance(result.static, QuasiStatic):
+    if result.static:
         rows += [
             ("mean crank power, W", with_error(summary["power_mean_W"], summary["power_sd_W"])),
             ("with the seat as drawn, W", _power(summary["power_unmoved_W"])),
@@ -115,11 +114,11 @@ def _print(result: Fit) -> None:
             *((f"{joint} angle, deg", span(ends)) for joint, ends in result.static.joint_range_deg.items()),
         ]
     print_table(f"{result.drawn.name}; {result.moments.name}; {legs}", ("", "best seat"), rows)
-    if isinstance(result.static, QuasiStatic):
+    if result.static:
         print_notes(result.static)
         conclude(True, "Fits", ".")
     else:
-        conclude(False, "Does not fit", f": {result.static}.")
+        conclude(False, "Does not fit", f": {result.why}.")
         for help_ in summary["helps"]:
             say(f"it would with {help_}")
 
@@ -145,10 +144,10 @@ def _population(
     if plot:
         require_extra("report", "matplotlib")
         require_writable(plot, "the picture", ".png", inputs)
-    from fes_mj.fit.population import steps, study_population
+    from fes_mj.fit.population import STEPS, fit_population
 
-    with progress_bar(f"{design.name}, riders", steps(), options.silent) as advance:
-        study = study_population(design, moments, limits=limits, samples=size, seed=seed, done=lambda: advance(1))
+    with progress_bar(f"{design.name}, riders", STEPS, options.silent) as advance:
+        result = fit_population(design, moments, limits=limits, samples=size, seed=seed, done=lambda: advance(1))
     if plot:
         import matplotlib as mpl
 
@@ -156,11 +155,11 @@ def _population(
         from fes_mj.viewing.people import population_figure
 
         with mpl.rc_context(STYLE), replacing(plot) as temporary:
-            population_figure([study]).savefig(temporary, dpi=150)
+            population_figure([result]).savefig(temporary, dpi=150)
     if options.json:
-        sys.stdout.write(json_text(study.summary()))
+        sys.stdout.write(json_text(result.summary()))
     elif not options.quiet:
-        _print_population(study.summary())
+        _print_population(result.summary())
     return 0
 
 

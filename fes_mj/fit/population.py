@@ -16,7 +16,7 @@ from fes_mj.statics.cycles import WorkTable
 
 SEATS = ("unmoved", "fitted")
 PEOPLE = {"men": "man", "women": "woman"}
-# Thighs and shanks for which the best seat is sought; in between its power is interpolated (see Study.map_error).
+# Thighs and shanks for which the best seat is sought; in between its power is interpolated (PopulationFit.map_error).
 _NODES = 9
 _PROBES = 5  # people of each sex whose seat is sought as well, for the error of the map
 _FINE = 61  # thighs and shanks of the map of the seat as drawn
@@ -46,8 +46,8 @@ class Riders(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Study:
-    """A design and a sample of "men" and of "women".
+class PopulationFit:
+    """How a design, with the seat as drawn and with the best one for each, suits a sample of "men" and of "women".
 
     drawn, map: with the seat as drawn and with the best one. map_error: largest difference of the interpolated power to
     that of a seat sought for the very person, W.
@@ -65,7 +65,7 @@ class Study:
         size = len(next(iter(self.riders.values())).unmoved)
         content: dict[str, Any] = {"design": self.design.name, "group": self.moments.name, "samples": size}
         for seat in SEATS:
-            powers = {who: getattr(each, seat) for who, each in self.riders.items()}
+            powers = {who: getattr(riders, seat) for who, riders in self.riders.items()}
             content[f"share_{seat}"] = {who: float(np.mean(np.isfinite(power))) for who, power in powers.items()}
             content[f"power_mean_{seat}_W"] = {who: _of_riding(np.mean, power) for who, power in powers.items()}
             content[f"power_p10_{seat}_W"] = {
@@ -79,12 +79,10 @@ def _of_riding(statistic: Callable[[FloatArray], Any], power: FloatArray) -> flo
     return float(statistic(riding)) if riding.size else None
 
 
-def steps() -> int:
-    """How often study_population calls `done`."""
-    return _NODES + len(PEOPLE)
+STEPS = _NODES + len(PEOPLE)  # how often fit_population calls `done`
 
 
-def study_population(
+def fit_population(
     design: Design,
     moments: JointMoments,
     *,
@@ -92,35 +90,33 @@ def study_population(
     samples: int = SAMPLES,
     seed: int = 0,
     done: Callable[[], None] = lambda: None,
-) -> Study:
-    """Sample so many men and women; `done` is called steps() times.
+) -> PopulationFit:
+    """Sample so many men and women; `done` is called STEPS times.
 
     Raises AssemblyError for a linkage that cannot turn whoever sits where.
     """
     table, random = WorkTable.of(moments), np.random.default_rng(seed)
     legs = {who: populations()[key].sample(samples, random) for who, key in PEOPLE.items()}
     thigh, shank = (
-        np.linspace(
-            min(each.min() for each in lengths) - _MARGIN, max(each.max() for each in lengths) + _MARGIN, _NODES
-        )
-        for lengths in ([each.thigh for each in legs.values()], [each.shank for each in legs.values()])
+        np.linspace(np.min(lengths) - _MARGIN, np.max(lengths) + _MARGIN, _NODES)
+        for lengths in ([people.thigh for people in legs.values()], [people.shank for people in legs.values()])
     )
     rows = []
     for length in thigh:
         rows.append(_fitted(design, np.full(_NODES, length), shank, table, limits))
         done()
-    found, riders, errors = PowerMap(thigh, shank, np.array(rows)), {}, []
+    best, riders, errors = PowerMap(thigh, shank, np.array(rows)), {}, []
     fine = [np.linspace(axis[0], axis[-1], _FINE) for axis in (thigh, shank)]
-    thighs, shanks = (each.ravel() for each in np.meshgrid(*fine, indexing="ij"))
+    thighs, shanks = (axis.ravel() for axis in np.meshgrid(*fine, indexing="ij"))
     drawn = PowerMap(fine[0], fine[1], _unmoved(design, thighs, shanks, table).reshape(_FINE, _FINE))
-    for who, each in legs.items():
-        fitted, unmoved = found.at(each.thigh, each.shank), _unmoved(design, each.thigh, each.shank, table)
-        riders[who] = Riders(populations()[PEOPLE[who]], each, unmoved, fitted)
+    for who, people in legs.items():
+        fitted, unmoved = best.at(people.thigh, people.shank), _unmoved(design, people.thigh, people.shank, table)
+        riders[who] = Riders(populations()[PEOPLE[who]], people, unmoved, fitted)
         probes = slice(0, _PROBES)
-        errors.append(fitted[probes] - _fitted(design, each.thigh[probes], each.shank[probes], table, limits))
+        errors.append(fitted[probes] - _fitted(design, people.thigh[probes], people.shank[probes], table, limits))
         done()
     differences = np.abs(np.concatenate(errors))
-    return Study(design, moments, drawn, found, riders, float(np.nanmax(differences, initial=0.0)))
+    return PopulationFit(design, moments, drawn, best, riders, float(np.nanmax(differences, initial=0.0)))
 
 
 def _unmoved(design: Design, thigh: FloatArray, shank: FloatArray, table: WorkTable) -> FloatArray:

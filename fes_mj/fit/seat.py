@@ -5,6 +5,7 @@ A seat that slides and reclines moves the hip against the frame: R1 and the seat
 
 import math
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -23,8 +24,8 @@ from fes_mj.statics.turn import QuasiStatic, quasi_static
 # What a degree outside the moments' range counts as, W/deg. A choice: the range comes first, power second. A degree of
 # which nothing is known would have to win a third of a design's power.
 OUTSIDE_COST = 10.0
-# What a seat's way counts as, W/m: of seats that are as good the nearest is taken, and 20 cm are worth 0.1 W.
-WAY_COST = 0.5
+# What a seat's move counts as, W/m: of seats that are as good the nearest is taken, and 20 cm are worth 0.1 W.
+MOVE_COST = 0.5
 _BACK = 0.5  # m, of a backrest: what a change of its angle counts as
 # Seats tried for a rider: a grid over the limits, then clouds around the best so far, the first as wide as the grid's
 # step. tests/test_fit.py has what that leaves against a search of another kind.
@@ -53,7 +54,7 @@ class Seats(NamedTuple):
         return self.forward - 1j * self.up
 
     @property
-    def way(self) -> Any:
+    def distance(self) -> Any:
         """How far the seat has moved, m."""
         return np.sqrt(self.forward**2 + self.up**2 + (_BACK * self.recline) ** 2)
 
@@ -132,72 +133,60 @@ def best_seats(
 
 def _best(design: Design, legs: FloatArray, seats: FloatArray, table: WorkTable) -> tuple[Seats, Scores]:
     """Of the seats of each rider, shape (riders, seats, 3), the best; legs: thigh and shank, shape (riders, 2)."""
-    count, found = seats.shape[1], []
+    count, chosen = seats.shape[1], []
     size = max(1, _AT_ONCE // count)
     for start in range(0, len(legs), size):
         rows = slice(start, start + size)
         thigh, shank = np.repeat(legs[rows], count, axis=0).T[..., None]
         tried = Seats(*seats[rows].reshape(-1, 3).T)
-        batch = Seats(*(each[:, None] for each in tried)).moved(design.with_rider(thigh=thigh, shank=shank))
+        batch = Seats(*(move[:, None] for move in tried)).moved(design.with_rider(thigh=thigh, shank=shank))
         scores = score(batch, table)
-        merit = (scores.merit - WAY_COST * tried.way).reshape(-1, count)
+        merit = (scores.merit - MOVE_COST * tried.distance).reshape(-1, count)
         top = np.argmax(merit, axis=1) + count * np.arange(len(merit))
-        found.append([each[top] for each in (*tried, *scores)])
-    whole = [np.concatenate(each) for each in zip(*found, strict=True)]
+        chosen.append([values[top] for values in (*tried, *scores)])
+    whole = [np.concatenate(parts) for parts in zip(*chosen, strict=True)]
     return Seats(*whole[:3]), Scores(*whole[3:])
 
 
 @dataclass(frozen=True)
-class Fit:
-    """A design, as drawn, with the best seat for a rider within limits; whether it fits, and if not, why."""
+class SeatFit:
+    """The best seat of a design, as drawn, for a rider within limits.
+
+    design: with the rider and the seat moved. static: its turn; None if the rider does not fit, and then `why` says by
+    how much and at which crank angle.
+    """
 
     drawn: Design
     rider: Rider
     moments: JointMoments
     limits: SeatLimits
     seat: Seats
-
-    @property
-    def unmoved(self) -> Design:
-        """With the rider, the seat as drawn."""
-        return replace(self.drawn, rider=self.rider)
-
-    @cached_property
-    def design(self) -> Design:
-        """With the rider and the seat moved."""
-        return self.seat.moved(self.unmoved)
-
-    @cached_property
-    def static(self) -> QuasiStatic | InputError:
-        """The turn with the seat moved; not fitting: why, with by how much and at which crank angle."""
-        return _turn(self.design, self.moments)
+    design: Design
+    static: QuasiStatic | None
+    why: str | None
 
     @property
     def fits(self) -> bool:
-        return isinstance(self.static, QuasiStatic)
+        return self.static is not None
 
     @cached_property
     def helps(self) -> list[str]:
         """What would let a rider ride whom no seat within the limits suits."""
-        found = []
+        texts = []
         wider = SeatLimits(*((low - _WIDER, high + _WIDER) for low, high in self.limits))
-        other = fit(self.drawn, self.rider, self.moments, wider)
+        other = fit_seat(self.drawn, self.rider, self.moments, wider)
         if other.fits:
-            found.append(f"a seat that moves farther: {seat_text(other.seat)}")
+            texts.append(f"a seat that moves farther: {seat_text(other.seat)}")
         for part in _CRANKS:
             crank = part * self.drawn.linkage.crank
-            if fit(self.drawn.with_linkage(crank=crank), self.rider, self.moments, self.limits).fits:
-                return [*found, f"a crank (R2) of {100 * crank:.1f} instead of {100 * crank / part:.1f} cm"]
-        return found
+            if fit_seat(self.drawn.with_linkage(crank=crank), self.rider, self.moments, self.limits).fits:
+                return [*texts, f"a crank (R2) of {100 * crank:.1f} instead of {100 * crank / part:.1f} cm"]
+        return texts
 
     def summary(self) -> dict[str, Any]:
         """The result as JSON names and units it; the keys of a turn only where there is one."""
-        known = ("power_mean_W", "power_sd_W", "knee_range_deg", "hip_range_deg", "extrapolated_share", "notes")
-        turn = self.static.summary() if isinstance(self.static, QuasiStatic) else {}
-        powers = {
-            "power_unmoved_W": _turn(self.unmoved, self.moments),
-            "power_paper_rider_W": _turn(replace(self.drawn, rider=Rider()), self.moments),
-        }
+        keys = ("power_mean_W", "power_sd_W", "knee_range_deg", "hip_range_deg", "extrapolated_share", "notes")
+        turn = self.static.summary() if self.static else {}
         return {
             "design": self.drawn.name,
             "group": self.moments.name,
@@ -205,33 +194,40 @@ class Fit:
             "rider": {key: getattr(self.rider, key) for key in ("thigh", "shank", "mass", "sex", "leg_mass_factor")},
             "seat_shift_m": [self.seat.shift.real, self.seat.shift.imag],
             "seat_angle_deg": math.degrees(self.design.linkage.seat_angle),
-            **{key: turn.get(key) for key in known},
-            **{key: each.power_mean if isinstance(each, QuasiStatic) else None for key, each in powers.items()},
-            "why": None if self.fits else str(self.static),
+            **{key: turn.get(key) for key in keys},
+            "power_unmoved_W": self._power_as_drawn(self.rider),
+            "power_paper_rider_W": self._power_as_drawn(Rider()),
+            "why": self.why,
             "helps": [] if self.fits else self.helps,
         }
 
+    def _power_as_drawn(self, rider: Rider) -> float | None:
+        """Mean crank power of a rider with the seat as drawn, W; None if the linkage does not turn with him or her."""
+        with suppress(InputError):
+            return quasi_static(replace(self.drawn, rider=rider), self.moments).power_mean
+        return None
 
-def _turn(design: Design, moments: JointMoments) -> QuasiStatic | InputError:
-    try:
-        return quasi_static(design, moments)
-    except InputError as error:
-        return error
 
-
-def fit(design: Design, rider: Rider, moments: JointMoments, limits: SeatLimits = SEAT_LIMITS) -> Fit:
+def fit_seat(design: Design, rider: Rider, moments: JointMoments, limits: SeatLimits = SEAT_LIMITS) -> SeatFit:
     """The best seat of a design for a rider: least outside the moments' range, then most mean power, then nearest.
 
-    Raises AssemblyError for a linkage that cannot turn whoever sits where.
+    That no seat within the limits suits is a result as well. Raises AssemblyError for a linkage that cannot turn
+    whoever sits where.
     """
     seats, _ = best_seats(design, [rider.thigh], [rider.shank], WorkTable.of(moments), limits)
-    return Fit(design, rider, moments, limits, Seats(*(float(each[0]) for each in seats)))
+    seat = Seats(*(float(move[0]) for move in seats))
+    seated, why = seat.moved(replace(design, rider=rider)), None
+    try:
+        static = quasi_static(seated, moments)
+    except InputError as error:
+        static, why = None, str(error)
+    return SeatFit(design, rider, moments, limits, seat, seated, static, why)
 
 
 def seat_text(seat: Seats) -> str:
     """A seat's move in words."""
-    ways = ((seat.forward, "towards the crank", "away from the crank"), (seat.up, "up", "down"))
-    moves = [f"{100 * abs(by):.1f} cm {onto if by > 0 else back}" for by, onto, back in ways if abs(by) >= 5e-4]
+    directions = ((seat.forward, "towards the crank", "away from the crank"), (seat.up, "up", "down"))
+    moves = [f"{100 * abs(by):.1f} cm {onto if by > 0 else back}" for by, onto, back in directions if abs(by) >= 5e-4]
     if abs(seat.recline) >= math.radians(0.05):
         moves.append(f"seat angle {math.degrees(seat.recline):+.1f} deg")
     return ", ".join(moves) or "stays where it is"

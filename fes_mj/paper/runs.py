@@ -7,7 +7,7 @@ import numpy as np
 
 from fes_mj.common.errors import AssemblyError
 from fes_mj.crosscheck.turn_case import Case
-from fes_mj.fit.population import Study, study_population
+from fes_mj.fit.population import PopulationFit, fit_population
 from fes_mj.linkage.design_file import DESIGNS, load_design
 from fes_mj.moments.files import load_moments
 from fes_mj.moments.joint_moments import GROUPS
@@ -29,7 +29,7 @@ class Runs:
     printed: dict[tuple[str, str], QuasiStatic | None]
     hill: dict[tuple[str, str], QuasiStatic]
     dynamic: dict[tuple[str, str, int], Case]
-    people: dict[str, Study]
+    people: dict[str, PopulationFit]
     rides: list[riding.Riding]
     budgets: error_budget.Budgets
 
@@ -50,7 +50,7 @@ def run_all(done: Callable[[], None]) -> Runs:
             for legs in (1, 2):
                 runs.dynamic[name, group, legs] = Case(design, moments[group], legs=legs)
                 done()
-        runs.people[name] = study_population(load_design(name), moments[GROUPS[0]])
+        runs.people[name] = fit_population(load_design(name), moments[GROUPS[0]])
         done()
     runs.budgets.update(error_budget.study(runs.static, done))
     return runs

@@ -8,12 +8,11 @@ from scipy.optimize import differential_evolution
 
 import fes_mj
 from fes_mj.common.errors import AssemblyError
-from fes_mj.fit.seat import SEAT_LIMITS, WAY_COST, SeatLimits, Seats, best_seats, fit, score, seat_text
+from fes_mj.fit.seat import MOVE_COST, SEAT_LIMITS, SeatLimits, Seats, best_seats, fit_seat, score, seat_text
 from fes_mj.linkage.design import Rider
 from fes_mj.linkage.kinematics import solve
 from fes_mj.linkage.riders import populations
 from fes_mj.statics.cycles import WorkTable
-from fes_mj.statics.turn import QuasiStatic
 
 # W: a fifth of the smallest standard deviation of a power with a moved seat, 0.25 W
 SEARCH_ERROR = 0.05
@@ -42,12 +41,12 @@ def test_another_search_finds_no_better_seat(name: str, who: str, percentile: fl
         tried = Seats(*x[..., None])
         legs = {"thigh": np.full((x.shape[1], 1), rider.thigh), "shank": np.full((x.shape[1], 1), rider.shank)}
         merit = score(tried.moved(design.with_rider(**legs)), table).merit
-        return np.asarray(WAY_COST * np.ravel(tried.way) - merit)
+        return np.asarray(MOVE_COST * np.ravel(tried.distance) - merit)
 
     other = differential_evolution(
         loss, SEAT_LIMITS, vectorized=True, updating="deferred", rng=1, popsize=20, maxiter=120, tol=1e-8, polish=False
     )
-    assert scores.merit[0] - WAY_COST * seats.way[0] > -other.fun - SEARCH_ERROR
+    assert scores.merit[0] - MOVE_COST * seats.distance[0] > -other.fun - SEARCH_ERROR
 
 
 def test_several_riders_are_fitted_as_each_alone() -> None:
@@ -62,11 +61,11 @@ def test_a_fit_stays_within_limits_and_range_and_never_loses_power() -> None:
     moments, limits = fes_mj.load_moments("p1p2"), SeatLimits((0.0, 0.1), (-0.02, 0.02), (0.0, 0.0))
     for name in ("r1", "d2"):
         design = fes_mj.load_design(name)
-        found = fit(design, Rider(), moments, limits)
-        assert isinstance(found.static, QuasiStatic)
+        found = fit_seat(design, Rider(), moments, limits)
+        assert found.static
         assert all(low <= value <= high for value, (low, high) in zip(found.seat, limits, strict=True))
-        free = fit(design, Rider(), moments)
-        assert isinstance(free.static, QuasiStatic)
+        free = fit_seat(design, Rider(), moments)
+        assert free.static
         assert free.static.extrapolation.share == 0
         drawn = fes_mj.quasi_static(design, moments)
         assert free.static.power_mean > drawn.power_mean
@@ -74,7 +73,7 @@ def test_a_fit_stays_within_limits_and_range_and_never_loses_power() -> None:
 
 def test_a_seat_that_need_not_move_stays() -> None:
     """The TRT delivers its own moments wherever they are in range: nothing is gained by moving."""
-    found = fit(fes_mj.load_design("trt"), Rider(), fes_mj.load_moments("p1p2"))
+    found = fit_seat(fes_mj.load_design("trt"), Rider(), fes_mj.load_moments("p1p2"))
     assert found.seat == pytest.approx((0, 0, 0), abs=2e-3)
     assert seat_text(Seats(0.0, 0.0, 0.0)) == "stays where it is"
     assert (
@@ -84,7 +83,7 @@ def test_a_seat_that_need_not_move_stays() -> None:
 
 def test_who_does_not_fit_is_told_by_how_much_where_and_what_helps() -> None:
     child, moments = populations()["woman"].of_stature(1.25), fes_mj.load_moments("p1p2")
-    found = fit(fes_mj.load_design("d1"), child, moments, SeatLimits((0.0, 0.1), (0.0, 0.0), (0.0, 0.0)))
+    found = fit_seat(fes_mj.load_design("d1"), child, moments, SeatLimits((0.0, 0.1), (0.0, 0.0), (0.0, 0.0)))
     content = found.summary()
     assert not content["fits"]
     assert content["power_mean_W"] is None
@@ -100,11 +99,11 @@ def test_a_shorter_crank_helps_where_it_does() -> None:
     design = fes_mj.load_design("trt")
     far = abs(design.linkage.crank_centre)
     rider = Rider(thigh=0.4, shank=math.sqrt((far + 0.8 * design.linkage.crank - 0.4) ** 2 - 0.069**2))
-    found = fit(design, rider, fes_mj.load_moments("p1p2"), SeatLimits((0.0, 0.0), (0.0, 0.0), (0.0, 0.0)))
+    found = fit_seat(design, rider, fes_mj.load_moments("p1p2"), SeatLimits((0.0, 0.0), (0.0, 0.0), (0.0, 0.0)))
     assert not found.fits
     assert any("a crank (R2) of 10.5 instead of 15.0 cm" in text for text in found.helps)
 
 
 def test_no_seat_repairs_a_linkage_that_cannot_turn() -> None:
     with pytest.raises(AssemblyError, match="rocker and coupler cannot close"):
-        fit(fes_mj.load_design("r2", "printed"), Rider(), fes_mj.load_moments("p1p2"))
+        fit_seat(fes_mj.load_design("r2", "printed"), Rider(), fes_mj.load_moments("p1p2"))
