@@ -2,10 +2,12 @@
 PYTHON ?= python3
 VENV ?= .venv
 BIN = $(VENV)/bin
-EVERYTHING = video,optimize,cluster,report,docs,test,lint
+EXTRAS = video,report,paper,optimize,cluster
+GROUPS = --group test --group lint --group docs
+PIP = $(BIN)/pip install --quiet -c constraints.txt
 PYTEST = $(BIN)/python -m pytest --numprocesses auto --dist worksteal
 
-.PHONY: demo test test-long lint docs format benchmark catalogue reproduce verification models pictures readers clean
+.PHONY: demo test test-long lint docs format benchmark catalogue reproduce verification models pictures readers dist clean
 
 demo: $(VENV)/.for-demo
 	mkdir -p demo
@@ -33,7 +35,7 @@ format: $(VENV)/.ready
 	$(BIN)/ruff check --fix .
 
 benchmark: $(VENV)/.ready
-	$(BIN)/pip install --quiet -c constraints.txt -e '.[benchmark]'
+	$(PIP) --group benchmark
 	$(BIN)/python -m benchmarks.core
 	$(BIN)/python -m benchmarks.start
 	$(BIN)/python -m benchmarks.exudyn
@@ -74,16 +76,26 @@ pictures: $(VENV)/.ready reproduce
 readers: $(VENV)/.ready
 	$(BIN)/python -m tools.conformance --build
 
-$(VENV)/.for-demo: WANTED = video
-$(VENV)/.ready: WANTED = $(EVERYTHING)
+# A wheel and an sdist as a user installs them, without constraints, each in an environment of its own: do they simulate?
+dist: $(VENV)/.ready
+	rm -rf dist
+	$(BIN)/python -m build --quiet --outdir dist
+	for file in dist/*.whl dist/*.tar.gz; do \
+		$(PYTHON) -m venv --clear dist/empty && dist/empty/bin/pip install --quiet "$$file" && \
+		(cd dist && empty/bin/fes_mj simulate d1 -q) || exit 1; \
+	done
+
+$(VENV)/.for-demo: WANTED = -e '.[video]'
+$(VENV)/.ready: WANTED = -e '.[$(EXTRAS)]' $(GROUPS)
 $(VENV)/.for-demo $(VENV)/.ready: pyproject.toml constraints.txt
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
 		{ echo "Python 3.11 or newer is needed; name one with make PYTHON=python3.12 ..."; exit 1; }
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/pip install --quiet -c constraints.txt -e '.[$(WANTED)]'
+	$(PIP) pip  # the one that venv brings may not know --group
+	$(PIP) $(WANTED)
 	# OpenGL for machines without any: only the library inside this wheel is used, so its own dependencies stay out
-	-@[ "$$(uname -sm)" != "Linux x86_64" ] || $(BIN)/pip install --quiet --no-deps -c constraints.txt lavavu-osmesa
+	-@[ "$$(uname -sm)" != "Linux x86_64" ] || $(PIP) --no-deps lavavu-osmesa
 	touch $@
 
 clean:
-	rm -rf $(VENV) .readers demo site docs/reference
+	rm -rf $(VENV) .readers demo dist site docs/reference

@@ -1,6 +1,6 @@
 """Speed in ratios within one run: kinematics beside a four-bar in plain numpy and pylinkage; simulate beside mj_step.
 
-Needs the extra "benchmark". Prints a table and writes results/benchmark.json.
+Needs the group "benchmark". Prints a table and writes results/benchmark.json.
 """
 
 import time

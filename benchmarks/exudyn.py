@@ -3,7 +3,7 @@
 The same bodies under the same torque map, models assembled, the error against the exact inverse dynamics. Runs
 alternate in one process, the median time counts. EXUDYN integrates by the trapezium rule on index 2, which beats its
 generalised-alpha method on index 3 here, its torques come from a Python function. Each takes the fewest steps of a list
-that reach the error asked for. Needs the extra "benchmark"; writes results/benchmark_exudyn.json.
+that reach the error asked for. Needs the group "benchmark"; writes results/benchmark_exudyn.json.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Speed of optimisation and sweeps, in ratios within one run.
 
 Power evaluations beside scipy's fsolve in a loop over crank angles and beside pylinkage's kinematics alone; simulated
-turns of the batch path beside the single path and beside a bare mujoco.rollout of the same models. Needs the extras
-"benchmark" and "optimize". Prints a table and writes results/benchmark_optimization.json.
+turns of the batch path beside the single path and beside a bare mujoco.rollout of the same models. Needs the group
+"benchmark". Prints a table and writes results/benchmark_optimization.json.
 """
 
 import cmath

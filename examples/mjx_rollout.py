@@ -1,6 +1,6 @@
 """Roll out 64 copies of the exported ride model at once with MJX: by how much should stimulation lead the crank?
 
-python examples/mjx_rollout.py       # needs mujoco-mjx: pip install 'fes-mj[mjx]'; compiling takes a minute
+python examples/mjx_rollout.py       # needs mujoco-mjx: pip install mujoco-mjx; compiling takes a minute
 
 Each copy pedals with the recovered moments commanded by crank angle, led by another angle; muscles answer with a lag of
 first order. What comes out is how far each has come, beside the angle by which such a lag trails. MJX leaves out the

@@ -2,7 +2,7 @@
 
 python examples/ride_env.py          # a table of stimulation windows, and chance
 
-It needs gymnasium: pip install 'fes-mj[gym]'.
+It needs gymnasium: pip install gymnasium.
 """
 
 import math

@@ -29,7 +29,7 @@ def shares(
     Each unknown is a scalar in [0, 1): its place among the realisations, ordered by the power that each makes alone, so
     that the power rises with it. Linkages that do not turn count as the mean. Raises MissingPartError without SALib.
     """
-    require_extra("budget", "SALib")
+    require_extra("paper", "SALib")
     from SALib.analyze import sobol as analysis
     from SALib.sample import sobol as sampling
 

@@ -27,8 +27,7 @@ def reproduce(
     quiet
         Print nothing but errors.
     """
-    require_extra("video", "matplotlib")
-    require_extra("budget", "SALib")
+    require_extra("paper", "matplotlib", "SALib")
     make_folder(out, "the results")
     from fes_mj.paper import reproduce as paper
 

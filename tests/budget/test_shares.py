@@ -59,5 +59,5 @@ def test_the_same_every_time_and_without_the_linkages_that_do_not_turn() -> None
 
 def test_without_salib_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "SALib", None)
-    with pytest.raises(MissingPartError, match=r"pip install 'fes-mj\[budget\]'"):
+    with pytest.raises(MissingPartError, match=r"pip install 'fes-mj\[paper\]'"):
         shares(lambda rows: np.zeros(3), NAMES, 3)

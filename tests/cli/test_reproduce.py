@@ -21,7 +21,7 @@ def test_without_matplotlib_the_extra_is_named(
 ) -> None:
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     assert run(["reproduce", "--out", str(tmp_path)]) == 3
-    assert "pip install 'fes-mj[video]'" in capsys.readouterr().err
+    assert "pip install 'fes-mj[paper]'" in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
 
 

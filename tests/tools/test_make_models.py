@@ -54,7 +54,7 @@ def test_the_scene_loads_from_anywhere() -> None:
 
 def lint(folder: Path) -> str:
     """What mjcf-doctor says of the models of a folder, by its static rules and after two seconds of motion."""
-    pytest.importorskip("mjcf_doctor", reason="install the extra `lint`")
+    pytest.importorskip("mjcf_doctor", reason="comes with the group `lint`")
     command = [sys.executable, "-m", "mjcf_doctor", "check", str(folder)]
     said = subprocess.run(command, capture_output=True, text=True).stdout
     return re.sub(r"\x1b\[\d*m", "", said)

@@ -30,9 +30,9 @@ def interpreter(name: str) -> Path | None:
 
 def build(name: str) -> None:
     """Make a reader's environment and install the reader in it; on any failure there is no environment."""
-    extras = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["optional-dependencies"]
+    groups = tomllib.loads((ROOT / "pyproject.toml").read_text())["dependency-groups"]
     reader = READERS[name]
-    requirements = [*reader.requirements] or [*extras[name], "-c", str(ROOT / "constraints.txt")]
+    requirements = [*reader.requirements] or [*groups[name], "-c", str(ROOT / "constraints.txt")]
     try:
         venv.create(ENVIRONMENTS / name, with_pip=True, clear=True)
         subprocess.run([ENVIRONMENTS / name / "bin" / "pip", "install", "--quiet", *requirements], check=True)

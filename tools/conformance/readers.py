@@ -27,7 +27,7 @@ class Reader:
     acceleration: Callable[[Answer], float]
     pedal: Callable[[Answer], float]
     reason: str
-    requirements: tuple[str, ...] = ()  # where they are not an extra of this project
+    requirements: tuple[str, ...] = ()  # where they are not a dependency group of this project
     without: dict[str, str] = field(default_factory=dict)
     still: tuple[str, ...] = ()
     most: int | None = None
