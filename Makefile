@@ -34,14 +34,10 @@ format: $(VENV)/.ready
 	$(BIN)/ruff format .
 	$(BIN)/ruff check --fix .
 
+# Speed, as ratios within one run, beside other programs: results/benchmarks/, each with the commit it was measured at.
 benchmark: $(VENV)/.ready
 	$(PIP) --group benchmark
-	$(BIN)/python -m benchmarks.core
-	$(BIN)/python -m benchmarks.start
-	$(BIN)/python -m benchmarks.exudyn
-	$(BIN)/python -m benchmarks.optimization
-	$(BIN)/python -m benchmarks.ride
-	$(BIN)/python -m benchmarks.video
+	for name in core start exudyn optimization ride video; do $(BIN)/python -m benchmarks.$$name || exit 1; done
 
 # Every check on every design, refined, with all faults injected: results/verification.md; every ride by both solvers:
 # results/ride_verification.md; what each setting of the simulation is worth: results/settings.md

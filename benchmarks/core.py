@@ -1,19 +1,17 @@
 """Speed in ratios within one run: kinematics beside a four-bar in plain numpy and pylinkage; simulate beside mj_step.
 
-Needs the group "benchmark". Prints a table and writes results/benchmark.json.
+Needs the group "benchmark". Prints a table and writes results/benchmarks/core.json.
 """
 
 import time
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import mujoco
 import numpy as np
 
+from benchmarks import record
 from fes_mj.common.console import print_table
-from fes_mj.common.provenance import provenance
-from fes_mj.common.writing import json_text, write_text
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.design_file import load_design
 from fes_mj.linkage.kinematics import positions
@@ -134,7 +132,7 @@ def simulation(name: str) -> dict[str, np.ndarray]:
 
 
 def main() -> None:
-    """Run everything, print a table, write results/benchmark.json."""
+    """Run everything, print a table, write results/benchmarks/core.json."""
     report, rows = {}, []
     for unit, measured in (
         ("positions/s", kinematics()),
@@ -146,7 +144,7 @@ def main() -> None:
             report[name] = {"median_per_s": float(np.median(values)), "ratio_to_last_of_group": ratio}
             rows.append((name, f"{np.median(values):.3g} {unit}", f"{ratio:.2f}"))
     print_table("Speed on one core, medians of one run", ("candidate", "rate", "ratio"), rows)
-    write_text(Path("results/benchmark.json"), json_text({"provenance": provenance(), "rates": report}))
+    record("core", {"rates": report})
 
 
 if __name__ == "__main__":

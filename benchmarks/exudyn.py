@@ -3,7 +3,7 @@
 The same bodies under the same torque map, models assembled, the error against the exact inverse dynamics. Runs
 alternate in one process, the median time counts. EXUDYN integrates by the trapezium rule on index 2, which beats its
 generalised-alpha method on index 3 here, its torques come from a Python function. Each takes the fewest steps of a list
-that reach the error asked for. Needs the group "benchmark"; writes results/benchmark_exudyn.json.
+that reach the error asked for. Needs the group "benchmark"; writes results/benchmarks/exudyn.json.
 """
 
 from __future__ import annotations
@@ -11,7 +11,6 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -21,9 +20,8 @@ import exudyn as exu  # noqa: E402
 from exudyn import itemInterface as items  # noqa: E402, N813
 
 import fes_mj  # noqa: E402
+from benchmarks import record  # noqa: E402
 from fes_mj.common.console import print_table  # noqa: E402
-from fes_mj.common.provenance import provenance  # noqa: E402
-from fes_mj.common.writing import json_text, write_text  # noqa: E402
 from fes_mj.linkage.kinematics import solve  # noqa: E402
 from fes_mj.linkage.segments import GRAVITY, inertias  # noqa: E402
 from fes_mj.moments.torque_map import torque_map  # noqa: E402
@@ -141,8 +139,7 @@ def main() -> None:
     ]
     columns = ("design", "program", "steps", "W rms", "time per EXUDYN's")
     print_table(f"Fewest steps that reach {ASKED} W rms of the crank power", columns, rows)
-    record = {"provenance": provenance(packages=["exudyn"]), **results}
-    write_text(Path("results/benchmark_exudyn.json"), json_text(record))
+    record("exudyn", results, packages=["exudyn"])
 
 
 if __name__ == "__main__":

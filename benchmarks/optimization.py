@@ -2,7 +2,7 @@
 
 Power evaluations beside scipy's fsolve in a loop over crank angles and beside pylinkage's kinematics alone; simulated
 turns of the batch path beside the single path and beside a bare mujoco.rollout of the same models. Needs the group
-"benchmark". Prints a table and writes results/benchmark_optimization.json.
+"benchmark". Prints a table and writes results/benchmarks/optimization.json.
 """
 
 import cmath
@@ -10,7 +10,6 @@ import math
 import time
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import mujoco
@@ -18,10 +17,9 @@ import numpy as np
 from mujoco import rollout
 from scipy.optimize import fsolve
 
+from benchmarks import record
 from benchmarks.core import pylinkage_six_bar, rates
 from fes_mj.common.console import print_table
-from fes_mj.common.provenance import provenance
-from fes_mj.common.writing import json_text, write_text
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.design_file import load_design
 from fes_mj.linkage.legs import ONE_LEG
@@ -207,12 +205,11 @@ def main() -> None:
     ratios = {f"{first} / {second}": float(np.median(measured[first] / measured[second])) for first, second in RATIOS}
     print_table("Ratios", ("", "ratio"), [(name, f"{ratio:,.3g}") for name, ratio in ratios.items()])
     content = {
-        "provenance": provenance(),
         "seconds": time.perf_counter() - started,
         "median_per_s": {name: float(np.median(values)) for name, values in measured.items()},
         "ratios": ratios,
     }
-    write_text(Path("results/benchmark_optimization.json"), json_text(content))
+    record("optimization", content)
 
 
 if __name__ == "__main__":

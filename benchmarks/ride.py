@@ -1,17 +1,13 @@
 """Speed of a ride in ratios within one run: MuJoCo's loop beside a bare mj_step loop, the reduced model beside MuJoCo.
 
-Needs the extra "optimize". Prints a table and writes results/benchmark_ride.json.
+Prints a table and writes results/benchmarks/ride.json.
 """
-
-from pathlib import Path
 
 import mujoco
 import numpy as np
 
-from benchmarks import core
+from benchmarks import core, record
 from fes_mj.common.console import print_table
-from fes_mj.common.provenance import provenance
-from fes_mj.common.writing import json_text, write_text
 from fes_mj.linkage.design_file import load_design
 from fes_mj.moments.files import load_moments
 from fes_mj.moments.torque_velocity import load_torque_velocity
@@ -49,7 +45,7 @@ def rates(name: str) -> dict[str, np.ndarray]:
 
 
 def main() -> None:
-    """Run everything, print a table, write results/benchmark_ride.json."""
+    """Run everything, print a table, write results/benchmarks/ride.json."""
     report, rows = {}, []
     for name in DESIGNS:
         measured = rates(name)
@@ -59,7 +55,7 @@ def main() -> None:
         report[name] |= {ratio: float(np.median(values)) for ratio, values in ratios.items()}
         rows += [(key, f"{value:.3g}") for key, value in report[name].items()]
     print_table("Seconds of riding per second, and ratios; medians of one run", ("", ""), rows)
-    write_text(Path("results/benchmark_ride.json"), json_text({"provenance": provenance(), "rates": report}))
+    record("ride", {"rates": report})
 
 
 if __name__ == "__main__":

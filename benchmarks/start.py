@@ -1,6 +1,6 @@
 """How long commands take to answer, in starts of a bare interpreter; ratios of one run, commands in turn.
 
-Prints a table and writes results/benchmark_start.json.
+Prints a table and writes results/benchmarks/start.json.
 """
 
 import os
@@ -12,9 +12,8 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks import record
 from fes_mj.common.console import print_table
-from fes_mj.common.provenance import provenance
-from fes_mj.common.writing import json_text, write_text
 
 ROUNDS = 15
 PYTHON, COMMAND = sys.executable, str(Path(sys.executable).with_name("fes_mj"))
@@ -61,7 +60,7 @@ def main() -> None:
     rows = [(name, f"{value:.1f}") for name, value in report["starts_of_a_bare_interpreter"].items()]
     rows.append(("simulate, per numpy + mujoco + cross-check", f"{report['simulate_per_its_parts']:.2f}"))
     print_table("Starts of a bare interpreter", ("command", "ratio"), rows)
-    write_text(Path("results/benchmark_start.json"), json_text({"provenance": provenance(), **report}))
+    record("start", report)
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 """Drawing and encoding a video's frames, in ratios within one run to the plain way: MuJoCo's smoothing and sky, twice.
 
-Prints a table and writes results/benchmark_video.json.
+Prints a table and writes results/benchmarks/video.json.
 """
 
 import tempfile
@@ -13,10 +13,9 @@ import mediapy
 import mujoco
 import numpy as np
 
+from benchmarks import record
 from fes_mj.common.arrays import Picture
 from fes_mj.common.console import print_table
-from fes_mj.common.provenance import provenance
-from fes_mj.common.writing import json_text, write_text
 from fes_mj.crosscheck.turn_case import Case
 from fes_mj.linkage.design_file import load_design
 from fes_mj.linkage.legs import LEGS
@@ -88,7 +87,7 @@ def main() -> None:
         for name, each in report.items()
     ]
     print_table(f"A video of {count} frames, shown twice", ("way", "rate", "ratio", "size, kB"), rows)
-    write_text(Path("results/benchmark_video.json"), json_text({"provenance": provenance(), "rates": report}))
+    record("video", {"rates": report})
 
 
 if __name__ == "__main__":

@@ -1,0 +1,37 @@
+"""What the benchmarks left: every module's result, with its command and commit, and rows that still name a command."""
+
+import json
+import re
+import runpy
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from fes_mj.cli.app import app
+
+ROOT = Path(__file__).parents[2]
+MODULES = {path.stem for path in (ROOT / "benchmarks").glob("*.py")} - {"__init__"}
+RESULTS = {path.stem: json.loads(path.read_text()) for path in (ROOT / "results" / "benchmarks").glob("*.json")}
+
+
+def test_every_benchmark_is_run_and_has_a_result() -> None:
+    assert RESULTS.keys() == MODULES
+    recipe = (ROOT / "Makefile").read_text().partition("\nbenchmark:")[2].partition("\n\n")[0]
+    assert set(re.search(r"for name in ([\w ]+);", recipe)[1].split()) == MODULES
+
+
+@pytest.mark.parametrize("name", RESULTS)
+def test_a_result_names_its_command_and_the_commit_it_was_measured_at(name: str) -> None:
+    provenance: dict[str, Any] = RESULTS[name]["provenance"]
+    assert provenance["command"] == f"python -m benchmarks.{name}"
+    assert re.fullmatch("[0-9a-f]{12}", provenance["commit"])
+
+
+def test_rows_of_start_name_commands_that_exist() -> None:
+    rows = {*RESULTS["start"]["starts_of_a_bare_interpreter"]}
+    candidates = runpy.run_path(str(ROOT / "benchmarks" / "start.py"))["CANDIDATES"]
+    assert rows - {"the cross-check alone"} == {*candidates}
+    for row in rows:
+        if row.startswith("fes_mj "):
+            app.parse_args(row.split()[1:], exit_on_error=False, print_error=False)
