@@ -22,13 +22,15 @@ class Errors(NamedTuple):
     loop_gap: float
 
 
-def predicted_errors(design: Design, cadence: float, step: float) -> Errors:
+def predicted_errors(design: Design, cadence: float, step: float, angles: FloatArray = ANGLES) -> Errors:
     """Errors of the simulation of one leg with `step` (rad of the crank) between two samples, without joint moments.
+
+    cadence: rad/s. angles: of the crank, uniform over a turn, at which they are evaluated, rad.
 
     The scheme puts every link where its loops close up to the gap g = step^2/2 * (difference of sum arm * turning^2
     along the two chains), takes speeds and accelerations as differences of such poses and balances the forces there.
     """
-    now, before, earlier, after = (_pose(design, ANGLES + shift * step, step) for shift in (0, -1, -2, 1))
+    now, before, earlier, after = (_pose(design, angles + shift * step, step) for shift in (0, -1, -2, 1))
     motion, power = now.motion, 0.0
     for body, inertia in inertias(design).items():
         first = {link: _turned(before, now, link) / step for link in _CHAINS[body]}

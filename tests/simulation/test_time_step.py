@@ -9,6 +9,7 @@ from fes_mj.common.errors import InputError
 from fes_mj.common.units import RPM
 from fes_mj.crosscheck.turn_case import Case
 from fes_mj.linkage.assembly import clearances
+from fes_mj.simulation import time_step
 from fes_mj.simulation.time_step import FEWEST_STEPS, LOOSE_STEPS, MOST_STEPS, loose_steps, steps_per_turn
 from studies.random_linkages import random_design
 
@@ -86,3 +87,20 @@ def test_a_loose_crank_near_a_dead_centre_is_refused() -> None:
     design = fes_mj.load_design("r2")
     with pytest.raises(InputError, match="a loose crank would reach"):
         loose_steps(design, design.linkage.cadence, gravity=1e9)
+
+
+def test_a_glance_that_shows_no_error_decides_as_the_whole_rule_does(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Random linkages, and legs that come ever nearer to being stretched."""
+    trt = fes_mj.load_design("trt")
+    reach = trt.rider.thigh + float(trt.knee_to_pedal) - abs(trt.linkage.crank_centre)
+    designs = [random_design(np.random.default_rng(seed)) for seed in range(12)]
+    designs += [trt.with_linkage(crank=reach - gap) for gap in np.geomspace(1.05e-4, 3e-3, 12)]
+
+    def steps() -> list[int]:
+        time_step._needed_steps.cache_clear()
+        return [steps_per_turn(design, 60 * RPM) for design in designs]
+
+    quick = steps()
+    monkeypatch.setattr(time_step, "WELL_WITHIN", -1.0)
+    assert quick == steps()
+    assert 4 < quick.count(FEWEST_STEPS) < 22
