@@ -11,7 +11,7 @@ import pytest
 playwright = pytest.importorskip("playwright.sync_api", reason="Playwright is not installed: pip install playwright")
 CHROMIUM = os.environ.get("CHROMIUM") or shutil.which("chromium") or shutil.which("chromium-browser")
 NEEDS_BROWSER = [
-    pytest.mark.long,
+    pytest.mark.process,
     pytest.mark.skipif(not CHROMIUM, reason="there is no Chromium: apt-get install chromium, or name one by CHROMIUM"),
 ]
 DESKTOP, PHONE = (1400, 900), (390, 844)

@@ -2,7 +2,6 @@
 
 import re
 import runpy
-import subprocess
 import sys
 from pathlib import Path
 from typing import Any
@@ -104,45 +103,46 @@ def test_mjx_rollout() -> None:
     assert 0.5 < found["distance"].min() < found["distance"].max() < 1.0
 
 
-def replayed(*arguments: str, folder: Path) -> subprocess.CompletedProcess[str]:
-    """The example, in a process that cannot import fes_mj."""
-    command = [sys.executable, "-I", "-c", _REPLAY, str(EXAMPLES / "replay_moments.py"), *arguments]
-    return subprocess.run(command, capture_output=True, text=True, cwd=folder)
+def replayed(*arguments: str, folder: Path, capsys: pytest.CaptureFixture[str]) -> tuple[int, str, str]:
+    """Exit code, output and errors of the example, run where fes_mj cannot be imported."""
+    code = 0
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setitem(sys.modules, "fes_mj", None)
+        patch.setattr(sys, "argv", ["replay_moments.py", *arguments])
+        patch.chdir(folder)
+        try:
+            runpy.run_path(str(EXAMPLES / "replay_moments.py"), run_name="__main__")
+        except SystemExit as end:
+            code = int(end.code or 0)
+    said = capsys.readouterr()
+    return code, said.out, said.err
 
 
-def replay(model: Path) -> float:
+def replay(model: Path, capsys: pytest.CaptureFixture[str]) -> float:
     """Mean crank power that it prints, W."""
-    process = replayed(str(model), folder=model.parent)
-    assert process.returncode == 0, process.stderr
-    return float(re.search(r"crank power ([\d.-]+) W", process.stdout)[1])  # type: ignore[index]
-
-
-_REPLAY = """
-import runpy, sys
-sys.modules["fes_mj"] = None
-sys.argv = sys.argv[1:]
-runpy.run_path(sys.argv[0], run_name="__main__")
-"""
+    code, out, err = replayed(str(model), folder=model.parent, capsys=capsys)
+    assert code == 0, err
+    return float(re.search(r"crank power ([\d.-]+) W", out)[1])  # type: ignore[index]
 
 
 @pytest.mark.parametrize("name", DESIGNS)
-def test_replay_moments(name: str) -> None:
+def test_replay_moments(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     """The files of mjcf/ and MuJoCo alone give the power of statics."""
     expected = quasi_static(load_design(name), load_moments()).power_mean
-    assert replay(ROOT / "mjcf" / name / f"{name}.xml") == pytest.approx(expected, rel=5e-3)
+    assert replay(ROOT / "mjcf" / name / f"{name}.xml", capsys) == pytest.approx(expected, rel=5e-3)
 
 
 @pytest.mark.parametrize("variant", ["two-legs", "compatible", "bodies"])
-def test_replay_moments_of_variants(variant: str, tmp_path: Path) -> None:
+def test_replay_moments_of_variants(variant: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     model = tmp_path / "model.xml"
     arguments = ["export", "d1", "--group", "p1p3", "-o", str(model), "--variant", variant]
     assert run(arguments) == 0
     legs = 2 if variant == "two-legs" else 1
     expected = legs * quasi_static(load_design("d1"), load_moments("p1p3")).power_mean
-    assert replay(model) == pytest.approx(expected, rel=5e-3)
+    assert replay(model, capsys) == pytest.approx(expected, rel=5e-3)
 
 
-def test_replay_moments_notices_wrong_moments(tmp_path: Path) -> None:
+def test_replay_moments_notices_wrong_moments(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Exchanged joints miss the power by far more than the limit of the tests above."""
     (tmp_path / "model.xml").write_text((ROOT / "mjcf/d1/d1.xml").read_text())
     table = (ROOT / "mjcf/d1/d1.csv").read_text()
@@ -150,7 +150,7 @@ def test_replay_moments_notices_wrong_moments(tmp_path: Path) -> None:
         table.replace("knee_Nm", "x").replace("hip_Nm", "knee_Nm").replace("x", "hip_Nm")
     )
     expected = quasi_static(load_design("d1"), load_moments()).power_mean
-    assert abs(replay(tmp_path / "model.xml") / expected - 1) > 0.1
+    assert abs(replay(tmp_path / "model.xml", capsys) / expected - 1) > 0.1
 
 
 @pytest.mark.parametrize(
@@ -168,7 +168,9 @@ def test_replay_moments_notices_wrong_moments(tmp_path: Path) -> None:
         ("other.xml", "other.csv: the columns crank_Nm are not there"),
     ],
 )
-def test_replay_moments_of_a_wrong_file_is_one_message(file: str, said: str, tmp_path: Path) -> None:
+def test_replay_moments_of_a_wrong_file_is_one_message(
+    file: str, said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     for name, variants in {"model": [], "passive": ["passive"], "free": ["free"]}.items():
         flags = [flag for variant in variants for flag in ("--variant", variant)]
         assert run(["export", "trt", "-o", str(tmp_path / f"{name}.xml"), *flags]) == 0
@@ -180,12 +182,11 @@ def test_replay_moments_of_a_wrong_file_is_one_message(file: str, said: str, tmp
         (tmp_path / f"{name}.csv").write_text(table)
     scene = (ROOT / "mjcf/trt/scene.xml").read_text().replace("trt.xml", "model.xml")
     (tmp_path / "scene.xml").write_text(scene)
-    process = replayed(*([file] if file else []), folder=tmp_path)
-    assert process.returncode == 2
-    assert process.stderr.startswith("replay_moments.py: ")
-    assert said in process.stderr
-    assert len(process.stderr.splitlines()) == 1
-    assert process.stdout == ""
+    capsys.readouterr()
+    code, out, err = replayed(*([file] if file else []), folder=tmp_path, capsys=capsys)
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert err.startswith("replay_moments.py: ")
+    assert said in err
 
 
 def test_no_example_is_left_out() -> None:

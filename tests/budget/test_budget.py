@@ -132,7 +132,7 @@ def test_too_few_that_turn_have_no_spread() -> None:
     assert np.isnan(Spread.of(np.array([1.0, np.nan]))[:2]).all()
 
 
-@pytest.mark.long
+@pytest.mark.process
 @pytest.mark.parametrize("name", ["p1p2", "own"])
 def test_the_same_to_the_last_bit_in_every_process(name: str) -> None:
     """Whatever the number of threads, for shipped curves and for Gaussian ones."""

@@ -9,7 +9,10 @@ from pathlib import Path
 
 import pytest
 
-pytestmark = pytest.mark.skipif(not Path("/proc/self/maps").exists(), reason="looks into /proc to see what runs")
+pytestmark = [
+    pytest.mark.process,
+    pytest.mark.skipif(not Path("/proc/self/maps").exists(), reason="looks into /proc to see what runs"),
+]
 PATIENCE = 60  # s
 # A shell shows 130 for both: Python ends by the signal itself if it came while a text was being executed.
 INTERRUPTED = (130, -signal.SIGINT)
@@ -98,8 +101,13 @@ def test_a_kill_in_the_middle_of_writing_leaves_the_old_file(tmp_path: Path) -> 
     assert target.read_text() == "old"
 
 
-@pytest.mark.parametrize("error", ["ImportError", "ctypes.ArgumentError", "InputError", "OSError"])
-@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+@pytest.mark.parametrize(
+    ("how", "error"),
+    [
+        *((signal.SIGINT, error) for error in ("ImportError", "ctypes.ArgumentError", "InputError", "OSError")),
+        *((how, "ImportError") for how in (signal.SIGTERM, signal.SIGHUP)),
+    ],
+)
 def test_an_error_that_somebody_made_of_an_interruption_is_one(how: signal.Signals, error: str) -> None:
     """A compiled module that is being loaded makes another error of it, and so does ctypes of its arguments."""
     done = subprocess.run(

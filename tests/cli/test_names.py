@@ -14,6 +14,7 @@ pytest.importorskip("jinja2")
 DESIGN = Path(fes_mj.__file__).parent / "data" / "designs" / "identified" / "d1.toml"
 
 
+@pytest.mark.process
 @pytest.mark.skipif(sys.platform != "linux", reason="other systems refuse such names themselves")
 @pytest.mark.parametrize("name", ["[bold]z[red] a$x$ R&D---<b>", "\x1b[31m\n\t\u202e自\udcff {{x}} ${y}"])
 def test_any_name_in_every_output(

@@ -9,7 +9,10 @@ import pytest
 
 import fes_mj
 
-pytestmark = pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full and a POSIX shell")
+pytestmark = [
+    pytest.mark.process,
+    pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full and a POSIX shell"),
+]
 DESIGN = Path(fes_mj.__file__).parent / "data" / "designs" / "identified" / "d1.toml"
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+pytestmark = pytest.mark.process
 pytest.importorskip("mediapy")
 pytest.importorskip("jinja2")
 SCRIPT = """
@@ -21,9 +22,9 @@ sys.exit(run(sys.argv[1:]))
 @pytest.mark.parametrize(
     "arguments",
     [
-        pytest.param(["simulate", "d1", "--out", ".", "--render", "v.mp4", "--legs", "2"], marks=pytest.mark.long),
+        ["simulate", "d1", "--out", ".", "--render", "v.mp4", "--legs", "2"],
         ["simulate", "r1", "--json"],
-        pytest.param(["validate", "r2", "--quick", "--report", "r.html", "--junit", "j.xml"], marks=pytest.mark.long),
+        ["validate", "r2", "--quick", "--report", "r.html", "--junit", "j.xml"],
         ["export", "d2", "-o", "m.xml", "--scene", "--variant", "two-legs"],
     ],
     ids=" ".join,

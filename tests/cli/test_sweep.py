@@ -150,15 +150,17 @@ size = 3000
 seed = 1
 thigh = [0.50, 0.54]
 """
+KILLS = 6
 
 
-def _killed_again_and_again(folder: Path, kills: int, seed: int) -> None:
+@pytest.mark.process
+def test_a_sweep_killed_at_random_has_the_rows_of_an_undisturbed_one(tmp_path: Path) -> None:
     """Stop a sweep at random times in random ways, then let it end: the rows of an undisturbed one, bit for bit."""
-    random, study = np.random.default_rng(seed), folder / "study.toml"
+    random, study = np.random.default_rng(2), tmp_path / "study.toml"
     study.write_text(MANY_CHUNKS)
-    sweep = Sweep(load_study(study), folder / "out")
+    sweep = Sweep(load_study(study), tmp_path / "out")
     command = [sys.executable, "-m", "fes_mj", "sweep", str(study), "-o", str(sweep.folder), "--jobs", "1", "-q"]
-    for _ in range(kills):
+    for _ in range(KILLS):
         before = len([*sweep.folder.glob("chunk-*")])
         with subprocess.Popen(command, stderr=subprocess.DEVNULL) as process:
             while process.poll() is None and len([*sweep.folder.glob("chunk-*")]) == before < sweep.study.chunks:
@@ -170,16 +172,6 @@ def _killed_again_and_again(folder: Path, kills: int, seed: int) -> None:
     assert len(sweep.finished()) < sweep.study.chunks
     subprocess.run(command, check=True)
     assert not [*sweep.folder.glob(".*")]
-    undisturbed = Sweep(sweep.study, folder / "undisturbed")
+    undisturbed = Sweep(sweep.study, tmp_path / "undisturbed")
     undisturbed.run()
     assert sweep.read().equals(undisturbed.read())
-
-
-@pytest.mark.long
-def test_a_sweep_killed_twice_has_the_rows_of_an_undisturbed_one(tmp_path: Path) -> None:
-    _killed_again_and_again(tmp_path, 2, 1)
-
-
-@pytest.mark.long
-def test_a_sweep_killed_twenty_times_has_the_rows_of_an_undisturbed_one(tmp_path: Path) -> None:
-    _killed_again_and_again(tmp_path, 20, 2)

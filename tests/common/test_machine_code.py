@@ -50,7 +50,7 @@ def run(code: str, **environment: str) -> list[str]:
     return answer.stdout.splitlines()
 
 
-@pytest.mark.long
+@pytest.mark.process
 def test_without_numba_the_same_functions_run_in_python(tmp_path: Path) -> None:
     pytest.importorskip("numba")
     *plain, imported = run(WITHOUT + RIDE)
@@ -72,6 +72,7 @@ def kept(tmp_path: Path) -> dict[str, str]:
     return {"NUMBA_CACHE_DIR": str(tmp_path / "kept"), "PYTHONPATH": path}
 
 
+@pytest.mark.process
 def test_a_change_in_another_file_is_seen(kept: dict[str, str], tmp_path: Path) -> None:
     assert run("import outer", **kept) == ["2.0 0"]
     assert run("import outer", **kept) == ["2.0 1"]
@@ -79,6 +80,7 @@ def test_a_change_in_another_file_is_seen(kept: dict[str, str], tmp_path: Path) 
     assert run("import outer", **kept) == ["3.0 0"]
 
 
+@pytest.mark.process
 def test_processes_at_once_share_what_they_keep(kept: dict[str, str]) -> None:
     command = [sys.executable, "-c", "import outer"]
     runs = [subprocess.Popen(command, env=os.environ | kept, stdout=subprocess.PIPE, text=True) for _ in range(3)]
@@ -86,6 +88,7 @@ def test_processes_at_once_share_what_they_keep(kept: dict[str, str]) -> None:
     assert run("import outer", **kept) == ["2.0 1"]
 
 
+@pytest.mark.process
 def test_where_nothing_can_be_kept_it_is_made_anew() -> None:
     """Of a function without a file, as of one beside which, and in whose user's folder, nothing can be written."""
     scope: dict[str, object] = {}

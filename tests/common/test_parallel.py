@@ -65,7 +65,7 @@ def test_tasks_are_spread_over_processes() -> None:
     assert os.getpid() not in processes
 
 
-@pytest.mark.long
+@pytest.mark.process
 def test_a_sweep_survives_kill_9(tmp_path: Path) -> None:
     """Killed with chunks done and chunks to do; then finished chunks are kept as they are, none is counted twice."""
     study, folder = study_file(tmp_path, chunk=400, size=5000), tmp_path / "out"
@@ -104,6 +104,7 @@ def lives(pid: int) -> bool:
         return False
 
 
+@pytest.mark.process
 @pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="looks into /proc to see what runs")
 @pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
 def test_no_worker_outlives_its_parent(how: signal.Signals) -> None:
@@ -149,7 +150,7 @@ def cluster(tmp_path: Path) -> Iterator[tuple[str, list[subprocess.Popen[str]]]]
         process.wait()
 
 
-@pytest.mark.long
+@pytest.mark.process
 @pytest.mark.filterwarnings("ignore::DeprecationWarning", "ignore::ResourceWarning")
 def test_a_cluster_that_loses_a_worker_gives_the_serial_result(
     tmp_path: Path, cluster: tuple[str, list[subprocess.Popen[str]]]

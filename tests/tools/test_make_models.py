@@ -60,16 +60,19 @@ def lint(folder: Path) -> str:
     return re.sub(r"\x1b\[\d*m", "", said)
 
 
+@pytest.mark.process
 def test_the_linter_finds_nothing() -> None:
     assert "5 model(s) loaded, 0 failed  ·  0 errors  0 warnings" in lint(ROOT / "mjcf")
 
 
+@pytest.mark.process
 @pytest.mark.parametrize("suffix", SHIPPED)
 def test_the_linter_finds_nothing_in_the_variants(suffix: str) -> None:
     for name in ("trt", "d1"):
         assert f"{name}-{suffix}.xml  — clean" in lint(ROOT / "mjcf" / name / f"{name}-{suffix}.xml")
 
 
+@pytest.mark.process
 def test_the_linter_finds_an_inertia_in_wrong_units(tmp_path: Path) -> None:
     text = (ROOT / "mjcf" / "d1" / "d1.xml").read_text(encoding="utf-8")
     (tmp_path / "d1.xml").write_text(re.sub(r'diaginertia="[^"]*"', 'diaginertia="1e-9 1e-9 1e-9"', text))

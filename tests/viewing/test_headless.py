@@ -28,6 +28,7 @@ def test_without_opengl_there_are_numbers_and_one_message(
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.process
 @pytest.mark.skipif(sys.platform != "linux", reason="the wheel is for Linux")
 def test_the_wheel_serves_where_the_system_has_nothing(tmp_path: Path) -> None:
     """In a process of its own, with every system backend refused."""

@@ -14,6 +14,7 @@ pytest.importorskip("mediapy")
 from fes_mj.viewing import render
 
 
+@pytest.mark.process
 def test_the_video_moves(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("fes_mj.viewing.render.LOOP", 0.2)
     path = tmp_path / "out.mp4"
@@ -87,6 +88,7 @@ def test_without_the_video_packages_the_message_names_the_extra(
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.process
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")  # mediapy leaves the encoder's pipe
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
 def test_a_full_disk_is_one_message(

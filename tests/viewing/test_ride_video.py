@@ -11,6 +11,7 @@ from tests.viewing.conftest import frames_of
 pytest.importorskip("mediapy")
 
 
+@pytest.mark.process
 def test_it_plays_in_true_time_and_the_road_passes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("fes_mj.viewing.ride_video.LONGEST", 0.5)
     path = tmp_path / "ride.mp4"
