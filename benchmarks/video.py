@@ -22,7 +22,7 @@ from fes_mj.linkage.legs import LEGS
 from fes_mj.moments.files import load_moments
 from fes_mj.simulation.mjcf import build_mjcf
 from fes_mj.viewing import render
-from fes_mj.viewing.power_panel import PowerPanel
+from fes_mj.viewing.panel import PowerPanel
 from fes_mj.viewing.stage import SIDE, Camera
 
 ROUNDS = 3  # of both ways in turn; medians and ratios are over rounds

@@ -166,9 +166,9 @@ def ride(
     elif not options.quiet:
         _print(case, found)
     if render:
-        from fes_mj.viewing.ride_video import render_ride
+        from fes_mj.viewing.render import render_video
 
-        render_ride(case, render, quiet=options.quiet)
+        render_video(case, render, quiet=options.quiet)
         if not options.silent:
             say(f"video: {render}")
     return 0 if case.agrees else 1
@@ -221,7 +221,7 @@ def _results(ride: Ride, folder: Path, starts: bool, inputs: Sequence[Path]) -> 
     marks = {"json": '"transmission": ', "csv": ",reduced_speed_m_s,", "xml": MARKS["model"]}
     if starts:
         require_extra("video", "matplotlib")
-        from fes_mj.viewing.starts_ring import MARK
+        from fes_mj.viewing.rings import MARK
 
         marks["svg"] = MARK
     paths = {suffix: folder / f"{ride.design.name}-{ride.moments.name}-ride.{suffix}" for suffix in marks}
@@ -240,7 +240,7 @@ def _write(case: RideCase, starts: Starts | None, paths: dict[str, Path]) -> Non
         "xml": mjcf_text(build_road_mjcf(case.ride, case.timestep)),
     }
     if starts:
-        from fes_mj.viewing.starts_ring import starts_svg
+        from fes_mj.viewing.rings import starts_svg
 
         texts["svg"] = starts_svg(starts)
     write_files({path: texts[suffix] for suffix, path in paths.items()})

@@ -65,9 +65,9 @@ def stimulation(
 
     windows = find_windows(loaded, cadences, lag)
     if plot:
-        from fes_mj.viewing.stimulation_plot import write_plot
+        from fes_mj.viewing.rings import write_windows
 
-        write_plot(plot, loaded, windows)
+        write_windows(plot, loaded, windows)
     if csv:
         write_files({csv: table_csv(loaded, windows)})
     if options.json:

@@ -38,10 +38,10 @@ def _over_crank(axes: Axes, measurement: Measurement) -> None:
     """Samples of every turn, smooth curves with their standard deviation, both zeros; grey where there is no data."""
     moments, angle = measurement.moments, np.radians(np.arange(361.0))
     for turn in measurement.turns:
-        for start, way in zip(*(np.degrees(each) for each in gaps(turn.crank_angle)), strict=True):
-            if way > np.degrees(WIDEST_GAP):
+        for start, width in zip(*map(np.degrees, gaps(turn.crank_angle)), strict=True):
+            if width > np.degrees(WIDEST_GAP):
                 for whole in (0, 360):  # the gap can go round the end of the axis
-                    axes.axvspan(start - whole, start + way - whole, color=FAINT, alpha=0.12, lw=0)
+                    axes.axvspan(start - whole, start + width - whole, color=FAINT, alpha=0.12, lw=0)
     curves, terms = moments.at(angle), fourier(angle)
     for number, joint in enumerate(JOINTS):
         for turn in measurement.turns:

@@ -11,10 +11,14 @@ from matplotlib.figure import Figure
 from PIL import Image, ImageDraw
 
 from fes_mj.common.arrays import Picture
-from fes_mj.common.style import BAD, FAINT, GOOD, INK, STYLE, literal
+from fes_mj.common.style import BAD, COLOURS, FAINT, GOOD, INK, STYLE, literal
+from fes_mj.common.units import KMH, RPM
+from fes_mj.crosscheck.ride_case import RideCase
+from fes_mj.crosscheck.turn_case import Case
 from fes_mj.linkage.design import Design
-from fes_mj.viewing.charts import any_letters
+from fes_mj.viewing.charts import any_letters, plot_power
 
+_SMOOTH = 0.02  # s over which a ride's power is drawn
 _DPI = 100
 _LEFT, _RIGHT = 0.05, 0.97  # of the width, where lines of text begin and end
 
@@ -63,3 +67,107 @@ def _fit(figure: Figure, y: float, text: str, size: float, **look: Any) -> None:
     line = figure.text(_LEFT, y, literal(text), size=size, **look)
     width = line.get_window_extent().width / figure.bbox.width
     line.set_fontsize(size * min(1.0, (_RIGHT - _LEFT) / width))
+
+
+class PowerPanel:
+    """Crank power over the turn, dynamic and static."""
+
+    def __init__(self, case: Case, width: int, height: int) -> None:
+        run = case.simulation
+        steps = len(run.crank_angle) // run.turns
+        self._angle = np.degrees(run.crank_angle[:steps]) % 360
+        self._power = run.power[:steps]
+        self._panel = Panel(width, height, lambda figure: [_draw_power(figure, case)])
+
+    def frame(self, step: int) -> Picture:
+        """The panel with the cursor at a step of the turn, shape (height, width, 3)."""
+        return self._panel.with_cursor(self._angle[step], self._power[step], COLOURS["mujoco"])
+
+
+def _draw_power(figure: Figure, case: Case) -> Axes:
+    run = case.simulation
+    axes = figure.add_axes((0.14, 0.27, 0.81, 0.48))
+    plot_power(axes, case)
+    mean = len(run.legs) * run.power_mean
+    axes.axhline(mean, color=COLOURS["mujoco"], lw=1, ls=":", label=f"mean of MuJoCo, {mean:.1f} W")
+    axes.legend(loc="lower left", bbox_to_anchor=(-0.02, 1.0), fontsize=11)
+    write_title(
+        figure,
+        run.design,
+        f"joint moments {run.moments.name.upper()}, {run.cadence / RPM:.1f} rpm, "
+        f"{'one leg' if len(run.legs) == 1 else 'two legs'}",
+    )
+    _write_turn(figure, case)
+    return axes
+
+
+def _write_turn(figure: Figure, case: Case) -> None:
+    """The numbers and the verdict below the curves."""
+    run = case.simulation
+    facts = (
+        ("mean power, MuJoCo", f"{run.power_mean:.3f} W a leg", COLOURS["mujoco"]),
+        ("mean power, quasi-static", f"{case.static_power_mean:.3f} W a leg", COLOURS["quasi-static"]),
+        ("MuJoCo less exact power, rms", f"{case.rms_per_leg(run):.3f} W a leg", INK),
+        ("largest loop gap", f"{1e6 * run.loop_gap_max:.1f} µm", INK),
+    )
+    for row, (name, value, colour) in enumerate(facts):
+        figure.text(0.14, 0.165 - 0.034 * row, name, size=12, color=colour)
+        figure.text(0.95, 0.165 - 0.034 * row, value, size=12, color=colour, ha="right", family="DejaVu Sans")
+    write_verdict(figure, verdict(case), case.agrees)
+
+
+def verdict(case: Case) -> str:
+    """What agrees, or which checks fail."""
+    failed = [check.name.replace("_", " ") for check in case.checks if not check.ok]
+    if failed:
+        return f"check failed: {', '.join(failed)}"
+    return f"mean power agrees: difference {case.difference_text}"
+
+
+class RidePanel:
+    """Speed and muscle power over time by both solvers."""
+
+    def __init__(self, case: RideCase, end: float, width: int, height: int) -> None:
+        """end: s, until which the ride is shown."""
+        self._time = case.simulation.trace.time
+        self._panel = Panel(width, height, lambda figure: _draw_ride(figure, case, end))
+
+    def frame(self, step: int) -> Picture:
+        """The panel with the cursor at a step of the ride, shape (height, width, 3)."""
+        return self._panel.with_cursor(self._time[step])
+
+
+def _draw_ride(figure: Figure, case: RideCase, end: float) -> list[Axes]:
+    speed, power = (figure.add_axes((0.14, bottom, 0.81, 0.30)) for bottom in (0.53, 0.14))
+    _plot(case, end, speed, power)
+    _write_ride(figure, case)
+    return [speed, power]
+
+
+def _plot(case: RideCase, end: float, speed: Axes, power: Axes) -> None:
+    looks = (
+        ("reduced model", case.reference, COLOURS["reference"], 4, 0.45),
+        ("MuJoCo", case.simulation.trace, COLOURS["mujoco"], 1.5, 1.0),
+    )
+    grid = np.arange(0, end, _SMOOTH)
+    for label, trace, colour, width, alpha in looks:
+        work = np.interp(grid, trace.time, trace.muscle_work)
+        speed.plot(
+            grid, np.interp(grid, trace.time, trace.speed) / KMH, color=colour, lw=width, alpha=alpha, label=label
+        )
+        power.plot(grid[:-1] + _SMOOTH / 2, np.diff(work) / _SMOOTH, color=colour, lw=width, alpha=alpha)
+    speed.set(xlim=(0, end), ylabel="tricycle, km/h")
+    power.set(xlim=(0, end), ylabel="muscles, W", xlabel="time, s")
+    power.axhline(0, color="black", lw=0.8)
+    speed.legend(loc="lower left", bbox_to_anchor=(-0.02, 1.0), fontsize=11, ncols=2)
+
+
+def _write_ride(figure: Figure, case: RideCase) -> None:
+    """Title above and the verdict below the curves."""
+    ride, trace = case.ride, case.simulation.trace
+    road = f"joint moments {ride.moments.name.upper()}, {ride.transmission}, {100 * ride.road.slope:.3g} % slope"
+    write_title(figure, ride.design, road)
+    speed = trace.mean_speed
+    end = f"rides, {(speed or 0) / KMH:.1f} km/h at the end" if trace.rides else f"stops after {trace.stopped_at:.1f} s"
+    verdict = "the two solvers agree" if case.agrees else "the two solvers DO NOT agree"
+    write_verdict(figure, f"{end}; {verdict}", case.agrees)

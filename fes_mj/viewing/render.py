@@ -1,19 +1,25 @@
-"""The video of a cross-check: the moving legs and linkage beside the crank power over the turn."""
+"""Videos of a cross-check: legs and linkage beside the crank power, or the tricycle on its road beside its speed."""
 
+import math
 import subprocess
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+import mujoco
 import numpy as np
 
 from fes_mj.common.arrays import IntArray, Picture
 from fes_mj.common.console import progress_bar
 from fes_mj.common.errors import InputError, MissingPartError, require_extra
 from fes_mj.common.writing import replacing
+from fes_mj.crosscheck.ride_case import RideCase
 from fes_mj.crosscheck.turn_case import Case
+from fes_mj.simulation.appearance import Spec, lowest_point
 from fes_mj.simulation.bench import Simulation
 from fes_mj.simulation.mjcf import build_mjcf
+from fes_mj.simulation.road import RoadRun
+from fes_mj.simulation.road_mjcf import build_road_mjcf
 from fes_mj.viewing.headless import use_offscreen_gl
 from fes_mj.viewing.stage import SIDE, stage
 
@@ -21,6 +27,10 @@ PLOT_WIDTH = 560  # pixels
 FRAMES_PER_SECOND = 30
 LOOP = 4.0  # s that a turn takes in slow motion, and that the turns shown take at least
 REPEATS = 2  # of these turns
+LONGEST = 12.0  # s of a ride that are shown, in real time, from the start
+AFTER_STOP = 1.0  # s that are shown of a tricycle that has stopped
+_DISTANCE = 1.3  # of the camera, per that of a bench: room for the road
+_TILE = 0.5  # m of a light and a dark tile of the road each
 
 
 def slow_motion(cadence: float) -> float:
@@ -36,20 +46,27 @@ def steps_shown(run: Simulation, speed: float) -> IntArray:
     return (np.arange(frames) * turns * steps // frames) % steps
 
 
-def render_video(case: Case, path: Path, speed: float | None = None, quiet: bool = False) -> None:
-    """Write an H.264 video of whole turns, REPEATS times, to `path`; raises as require_video and write_video.
+def render_video(case: Case | RideCase, path: Path, speed: float | None = None, quiet: bool = False) -> None:
+    """Write an H.264 video: of a turn whole turns, REPEATS times; of a ride its begin, in true time.
 
-    speed: of the video, 1 is the true one; by default that of slow_motion.
+    speed: of a turn's video, 1 is the true one; by default that of slow_motion. Raises MissingPartError as
+    require_video, InputError if the file cannot be written.
     """
     require_video()
-    speed = speed or slow_motion(case.cadence)
-    shown = steps_shown(case.simulation, speed)
-    write_video(path, pictures(case, shown, speed), len(shown), quiet, REPEATS)
+    if isinstance(case, RideCase):
+        run = case.simulation
+        end = min(LONGEST, float(run.trace.time[-1]), (run.trace.stopped_at or math.inf) + AFTER_STOP)
+        shown = (np.arange(0, end, 1 / FRAMES_PER_SECOND) / run.timestep).astype(int)
+        write_video(path, _ride_pictures(case, shown, end), len(shown), quiet)
+    else:
+        speed = speed or slow_motion(case.cadence)
+        shown = steps_shown(case.simulation, speed)
+        write_video(path, pictures(case, shown, speed), len(shown), quiet, REPEATS)
 
 
 def pictures(case: Case, steps: IntArray, speed: float) -> Iterator[Picture]:
     """The frames at these steps of the first turn, shape (SIDE, SIDE + PLOT_WIDTH, 3)."""
-    from fes_mj.viewing.power_panel import PowerPanel
+    from fes_mj.viewing.panel import PowerPanel
 
     run, panel = case.simulation, PowerPanel(case, PLOT_WIDTH, SIDE)
     spec = build_mjcf(run.design, cadence=run.cadence, timestep=run.timestep, legs=len(run.legs))
@@ -97,3 +114,34 @@ def write_video(path: Path, frames: Iterable[Picture], count: int, quiet: bool =
             said = error.stderr if isinstance(error, subprocess.CalledProcessError) else str(error)
             reason = said.strip().rpartition("] ")[2].strip()
             raise InputError(f"{path}: cannot be written: the encoder stopped: {reason}") from None
+
+
+def _ride_pictures(case: RideCase, steps: IntArray, end: float) -> Iterator[Picture]:
+    """The frames at these steps of a ride that is shown until `end`, s; in true time."""
+    from fes_mj.viewing.panel import RidePanel
+
+    run, panel = case.simulation, RidePanel(case, end, PLOT_WIDTH, SIDE)
+    spec = build_road_mjcf(run.ride, run.timestep)
+    _add_road(spec, run)
+    with stage(spec, run.ride.design, speed=1.0, legs=2, road=_DISTANCE) as scene:
+        for step in steps:
+            pose = {name: run.sensors[f"{name}_angle"][step] for name in run.sensors.joints}
+            yield np.hstack([scene.picture(pose, run.trace.distance[step]), panel.frame(int(step))])
+
+
+def _add_road(spec: Spec, run: RoadRun) -> None:
+    """A plane in tiles, so that one sees it pass."""
+    tiles = spec.add_texture(name="tiles", type=mujoco.mjtTexture.mjTEXTURE_2D, width=64, height=64)
+    tiles.builtin, tiles.rgb1, tiles.rgb2 = mujoco.mjtBuiltin.mjBUILTIN_CHECKER, [0.80] * 3, [0.70, 0.72, 0.75]
+    material = spec.add_material(name="road", texuniform=True, texrepeat=[1 / (2 * _TILE)] * 2, emission=0.4)
+    material.textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = "tiles"
+    length = float(run.trace.distance.max())
+    spec.worldbody.add_geom(
+        name="road",
+        type=mujoco.mjtGeom.mjGEOM_PLANE,
+        material="road",
+        pos=(-length / 2, 0, lowest_point(run.ride.design) - 0.1),
+        size=(length / 2 + 10, 3, 0.1),
+        contype=0,
+        conaffinity=0,
+    )

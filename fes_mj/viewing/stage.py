@@ -46,10 +46,10 @@ class Camera:
         share = (size.imag / 2 + _MARGIN) / half / (self._distance - _DEPTH)
         self.rows = min(SIDE, 2 * int(np.ceil(share * SIDE / 2)))
 
-    def forwards(self, way: float) -> mujoco.MjvCamera:
+    def forwards(self, distance: float) -> mujoco.MjvCamera:
         """MuJoCo's camera, so many m further forwards."""
         camera = mujoco.MjvCamera()
-        camera.lookat, camera.distance = self._middle - (way, 0.0, 0.0), self._distance
+        camera.lookat, camera.distance = self._middle - (distance, 0.0, 0.0), self._distance
         camera.azimuth, camera.elevation = AZIMUTH, ELEVATION
         return camera
 
@@ -76,15 +76,15 @@ def _extent(design: Design) -> dict[str, ComplexArray]:
     """All that is seen: what moves, the seat, the arrow."""
     corner = SEAT_DEPTH * (0.5 - 1j)
     back = corner + BACKREST * np.exp(1j * design.linkage.seat_angle)
-    return _moving(design) | {"seat": np.array([corner - SEAT_LENGTH, back]), "arrow": turning(design)}
+    return _moving(design) | {"seat": np.array([corner - SEAT_LENGTH, back]), "arrow": turning_arrow(design)}
 
 
-def turning(design: Design) -> ComplexArray:
+def turning_arrow(design: Design) -> ComplexArray:
     """An arc around the crank centre the way it turns, m: ahead of the linkage, outside all that moves there."""
     centre = complex(design.linkage.crank_centre)
     cloud = np.concatenate([np.ravel(points) for points in _moving(design).values()]) - centre
-    there = np.abs(np.angle(cloud * np.conj(centre))) < 1.5 * _REACH
-    radius = max(PARTS["chainring"].size, *np.abs(cloud[there])) + _CLEAR
+    ahead = np.abs(np.angle(cloud * np.conj(centre))) < 1.5 * _REACH
+    radius = max(PARTS["chainring"].size, *np.abs(cloud[ahead])) + _CLEAR
     return np.asarray(centre + radius * np.exp(1j * (np.angle(centre) + np.linspace(-_REACH, _REACH, 20))))
 
 
@@ -163,18 +163,18 @@ def _overlay(design: Design, camera: Camera, speed: float) -> Any:
     image = Image.new("RGBA", (SIDE, SIDE), (255, 255, 255, 0))
     draw = ImageDraw.Draw(image)
     draw.text((24, 20), speed_text(speed), font=font, fill=INK)
-    arc = turning(design)
+    arc = turning_arrow(design)
     along = (arc[-1] - arc[-2]) / abs(arc[-1] - arc[-2])
     draw.line(camera.pixels(arc), fill=INK, width=4)
     draw.polygon(camera.pixels(arc[-1] + _HEAD * along * np.array([1, 0.5j, -0.5j])), fill=INK)
     draw.rectangle((0, _KEY - _SWATCH, SIDE, SIDE), fill="white")
     names = ("hip", "knee", *design.linkage.architecture.bodies)
     widths = [_SWATCH + draw.textlength(name, small) + _GAP for name in names]
-    lefts = (SIDE - sum(widths) + _GAP) / 2 + np.cumsum([0, *widths[:-1]])
-    for name, left in zip(names, lefts.tolist(), strict=True):
+    starts = (SIDE - sum(widths) + _GAP) / 2 + np.cumsum([0, *widths[:-1]])
+    for name, start in zip(names, starts.tolist(), strict=True):
         joint = PARTS[name].shape == mujoco.mjtGeom.mjGEOM_CYLINDER
         width, height = (14, 14) if joint else (18, 8)
-        box = (left, _KEY - height / 2, left + width, _KEY + height / 2)
+        box = (start, _KEY - height / 2, start + width, _KEY + height / 2)
         (draw.ellipse if joint else draw.rectangle)(box, fill=hex_colour(PARTS[name].colour))
-        draw.text((left + _SWATCH, _KEY), name, font=small, fill=FAINT, anchor="lm")
+        draw.text((start + _SWATCH, _KEY), name, font=small, fill=FAINT, anchor="lm")
     return image

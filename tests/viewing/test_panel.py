@@ -10,8 +10,7 @@ pytest.importorskip("matplotlib")
 pytest.importorskip("PIL")
 from matplotlib.figure import Figure
 
-from fes_mj.viewing.panel import write_title, write_verdict
-from fes_mj.viewing.power_panel import verdict
+from fes_mj.viewing.panel import verdict, write_title, write_verdict
 
 
 @pytest.mark.parametrize("name", ["d1", "a-design-with-a-name-that-somebody-made-of-all-its-dimensions-2026-11-26"])

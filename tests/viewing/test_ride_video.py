@@ -13,7 +13,7 @@ pytest.importorskip("mediapy")
 
 @pytest.mark.process
 def test_it_plays_in_true_time_and_the_road_passes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("fes_mj.viewing.ride_video.LONGEST", 0.5)
+    monkeypatch.setattr("fes_mj.viewing.render.LONGEST", 0.5)
     path = tmp_path / "ride.mp4"
     assert run(["ride", "r1", "--duration", "2", "-q", "--render", str(path)]) == 0
     about, frames = frames_of(path)

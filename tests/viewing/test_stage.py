@@ -56,7 +56,7 @@ def test_nothing_is_cut(name: str) -> None:
 @pytest.mark.parametrize("name", DESIGNS)
 def test_the_arrow_turns_with_the_crank_outside_all_that_moves(name: str) -> None:
     design = fes_mj.load_design(name)
-    arc, centre = stages.turning(design), complex(design.linkage.crank_centre)
+    arc, centre = stages.turning_arrow(design), complex(design.linkage.crank_centre)
     positions = kinematics.positions(design, np.array([0.0, 0.1]))["crank_pin"] - centre
     assert np.all(np.diff(np.unwrap(np.angle(arc - centre))) * np.angle(positions[1] / positions[0]) > 0)
     pixels = np.array(stages.Camera(design, LEGS[2][0]).pixels(arc))

@@ -1,4 +1,4 @@
-"""Stimulation windows as rings: where each muscle group drives the crank, its core, and when to stimulate for that."""
+"""Rings of crank angles, as seen from the rider's right: the rider faces right, the crank turns clockwise."""
 
 from __future__ import annotations
 
@@ -12,29 +12,31 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from fes_mj.common.style import FAINT, INK, SERIES, STYLE, literal
-from fes_mj.common.units import RPM
+from fes_mj.common.style import BAD, FAINT, GOOD, INK, SERIES, STYLE, literal
+from fes_mj.common.units import KMH, RPM
 from fes_mj.common.writing import replacing
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.turning import turning
+from fes_mj.riding.starts import Starts
 from fes_mj.riding.stimulation import CORE, MUSCLES, Window
-from fes_mj.viewing.charts import any_letters
+from fes_mj.viewing.charts import any_letters, svg_text
 
+MARK = "<!-- Written by fes_mj: starts from rest -->"
 _RING, _WIDTH = 0.28, 0.11  # distance of two rings; of the band of a window, beside that of its stimulation
 _INNER = 0.30
 
 
-def write_plot(path: Path, design: Design, windows: Sequence[Window]) -> None:
-    """Write the right leg's windows, a ring a muscle and a panel a cadence, as the suffix of `path` says.
+def write_windows(path: Path, design: Design, windows: Sequence[Window]) -> None:
+    """Write the right leg's stimulation windows, a ring a muscle and a panel a cadence, as the suffix of `path` says.
 
-    As seen from the rider's right: the rider faces right, the crank turns clockwise.
+    Where each muscle group drives the crank, its core, and when to stimulate for that.
     """
     cadences = list(dict.fromkeys(window.cadence for window in windows))
     with mpl.rc_context(STYLE), any_letters(), replacing(path) as temporary:
         figure = Figure(figsize=(4.4 * len(cadences), 5.4))
         for number, cadence in enumerate(cadences):
-            axes: Any = figure.add_subplot(1, len(cadences), number + 1, projection="polar")
-            _rings(axes, design, [each for each in windows if each.cadence == cadence and each.leg == "right"])
+            axes = _clockwise(figure.add_subplot(1, len(cadences), number + 1, projection="polar"))
+            _rings(axes, design, [window for window in windows if window.cadence == cadence and window.leg == "right"])
         title = f"{design.name}: when to stimulate, lag {windows[0].lag:g} s"
         figure.suptitle(literal(title), weight="bold", y=0.98)
         labels = [
@@ -52,8 +54,6 @@ def write_plot(path: Path, design: Design, windows: Sequence[Window]) -> None:
 
 
 def _rings(axes: Any, design: Design, windows: Sequence[Window]) -> None:
-    axes.set_theta_zero_location("W")
-    axes.set_theta_direction(-1)
     for window in windows:
         place = list(MUSCLES).index(window.muscle)
         colour, height = SERIES[place], _INNER + _RING * place
@@ -73,3 +73,33 @@ def _rings(axes: Any, design: Design, windows: Sequence[Window]) -> None:
     cadence, lead = windows[0].cadence, math.degrees(windows[0].lead)
     speed = f"{cadence / RPM:.1f} rpm ({cadence / (2 * math.pi):.2f} Hz)"
     axes.set_title(f"{speed}, advanced by {lead:.0f} deg", size=9, pad=14)
+
+
+def starts_svg(starts: Starts) -> str:
+    """From which crank angles a tricycle starts from rest, as SVG."""
+    ride, width = starts.ride, 2 * np.pi / len(starts.crank_angle)
+    with mpl.rc_context(STYLE):
+        figure = Figure(figsize=(4.6, 4.6))
+        axes = _clockwise(figure.add_axes((0.12, 0.08, 0.76, 0.76), projection="polar"))
+        colours = [GOOD if works else BAD for works in starts.works]
+        axes.bar(starts.crank_angle, 0.35, width=width, bottom=0.65, color=colours, lw=0)
+        axes.set(ylim=(0, 1), yticks=[])
+        axes.grid(visible=False)
+        launch = "no launch helps" if starts.launch is None else f"launch needed: {starts.launch / KMH:.1f} km/h"
+        slope = "climbs nothing" if starts.slope is None else f"climbs {100 * starts.slope:.1f} %"
+        for height, text, colour in (
+            (0.12, f"starts from {100 * starts.share:.0f} %", INK),
+            (0, launch, FAINT),
+            (-0.12, slope, FAINT),
+        ):
+            axes.text(0.5, 0.5 + height, text, ha="center", va="center", color=colour, transform=axes.transAxes)
+        title = f"{ride.design.name}, {ride.moments.name}, {ride.transmission}, {100 * ride.road.slope:g} %"
+        figure.text(0.5, 0.94, literal(title), ha="center", size=11, weight="bold")
+        return f"{MARK}\n{svg_text(figure)}"
+
+
+def _clockwise(axes: Any) -> Any:
+    """Polar axes whose angle is 0 where the crank points backwards."""
+    axes.set_theta_zero_location("W")
+    axes.set_theta_direction(-1)
+    return axes
