@@ -13,7 +13,7 @@ from fes_mj.common.reading import DATA, Section, is_number, read_toml
 from fes_mj.common.text import printable
 from fes_mj.linkage.design import ARCHITECTURES, BRANCHES, SEXES, Design, Linkage, Rider
 from fes_mj.linkage.riders import PRESETS, preset
-from fes_mj.linkage.variables import LONGEST, VARIABLES, Variable
+from fes_mj.linkage.variables import LONGEST, VARIABLES, Variable, nearest_degrees
 
 DESIGNS = ("trt", "r1", "r2", "d1", "d2")
 DIMENSIONS = ("identified", "printed")
@@ -113,7 +113,10 @@ def _value(section: Section, variable: Variable) -> float | complex:
 
 
 def design_toml(design: Design, comment: str = "") -> str:
-    """The text of a design file that reads back as `design`; `comment` goes above it, a line each."""
+    """The text of a design file that reads back as `design`; `comment` goes above it, a line each.
+
+    An angle that no degrees are read as becomes its neighbour, which is written the same again.
+    """
     kind = design.linkage.kind
     lines = [f"# {line}".rstrip() for line in comment.splitlines()]
     for table, owner, head in (
@@ -131,14 +134,15 @@ def design_toml(design: Design, comment: str = "") -> str:
 
 
 def _written(value: Any, variable: Variable) -> str:
-    """Shortest decimal that reads back as the same number."""
+    """Shortest decimal that reads back as the same number; of an angle as nearest_degrees."""
     if variable.vector:
         return f"[{float(value.real)!r}, {float(value.imag)!r}]"
     if variable.unit != "deg":
         return repr(float(value))
-    degrees = math.degrees(value)
-    for digits in range(12, 18):  # radians and back: the nearest short decimal that is the same angle
+    as_read = math.radians(nearest_degrees(value))
+    degrees = nearest_degrees(as_read)
+    for digits in range(12, 17):
         text = np.format_float_positional(degrees, precision=digits, fractional=False, trim="0")
-        if math.radians(float(text)) == value:
+        if math.radians(float(text)) == as_read:
             return text
     return repr(degrees)

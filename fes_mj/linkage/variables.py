@@ -93,10 +93,23 @@ LENGTHS = tuple(name for name, (v, _) in COMPONENTS.items() if v.owner == "linka
 
 
 def component(design: Design, name: str) -> float:
-    """A component of a design in the unit of files."""
+    """A component of a design in the unit of files; an angle as nearest_degrees."""
     variable, part = COMPONENTS[name]
     value = getattr(getattr(design, variable.owner), variable.attribute)
-    return math.degrees(value) if variable.unit == "deg" else float(getattr(value, part) if part else value)
+    return nearest_degrees(value) if variable.unit == "deg" else float(getattr(value, part) if part else value)
+
+
+def nearest_degrees(angle: float) -> float:
+    """The degrees that are read as the float nearest to an angle in rad: the same one for 11 of 12 angles.
+
+    No degrees are read as the others, and math.degrees misses some that are.
+    """
+    below = above = middle = math.degrees(angle)
+    candidates = [middle]
+    for _ in range(2):
+        below, above = math.nextafter(below, -math.inf), math.nextafter(above, math.inf)
+        candidates += [below, above]
+    return min(candidates, key=lambda degrees: abs(math.radians(degrees) - angle))
 
 
 def replaced(design: Design, values: Mapping[str, Any]) -> Design:

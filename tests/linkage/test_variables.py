@@ -1,14 +1,25 @@
 """The one table of design variables: read, replaced, bounded the same everywhere."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given, strategies as st
 
 import fes_mj
 from fes_mj.common.errors import InputError
 from fes_mj.linkage.design_file import load_design
-from fes_mj.linkage.variables import COMPONENTS, LENGTHS, VARIABLES, component, lengths, replaced, with_lengths
+from fes_mj.linkage.variables import (
+    COMPONENTS,
+    LENGTHS,
+    VARIABLES,
+    component,
+    lengths,
+    nearest_degrees,
+    replaced,
+    with_lengths,
+)
 
 OWNED = [name for name, (variable, _) in COMPONENTS.items() if variable.owner]
 
@@ -59,3 +70,20 @@ def test_design_files_keep_to_the_bounds_of_the_table(symbol: str, tmp_path_fact
         else:
             with pytest.raises(InputError, match=rf"\.{symbol} is .*; it must be {variable.allowed.split(' ')[0]}"):
                 load_design(path)
+
+
+@given(st.floats(-360, 360))
+def test_degrees_read_as_an_angle_are_found_again(degrees: float) -> None:
+    """math.degrees misses one in twenty."""
+    angle = math.radians(degrees)
+    assert math.radians(nearest_degrees(angle)) == angle
+
+
+@given(st.floats(-2 * math.pi, 2 * math.pi))
+def test_no_other_degrees_are_read_as_an_angle_nearer_to_one(angle: float) -> None:
+    nearest = abs(math.radians(nearest_degrees(angle)) - angle)
+    assert nearest <= math.ulp(angle)
+    degrees = [math.degrees(angle)]
+    for _ in range(20):
+        degrees = [math.nextafter(degrees[0], -math.inf), *degrees, math.nextafter(degrees[-1], math.inf)]
+    assert min(abs(math.radians(each) - angle) for each in degrees) == nearest
