@@ -20,6 +20,7 @@ from scipy.optimize import fsolve
 from benchmarks import record
 from benchmarks.core import pylinkage_six_bar, rates
 from fes_mj.common.console import print_table
+from fes_mj.common.units import turns_per_second
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.design_file import load_design
 from fes_mj.linkage.legs import ONE_LEG
@@ -35,7 +36,8 @@ from fes_mj.simulation.bench import joint_drives, simulate
 from fes_mj.simulation.compiled import compiled_loop
 from fes_mj.simulation.mjcf import build_mjcf
 from fes_mj.simulation.time_step import steps_per_turn
-from fes_mj.statics.cycles import TURN_POINTS, WorkTable, cycles, joint_speeds
+from fes_mj.statics.cycles import CYCLE_POINTS, cycles, joint_speeds
+from fes_mj.statics.work_table import WorkTable
 
 DESIGNS, TURNS, THREADS = 2000, 16, 2
 MOMENTS = load_moments("p1p2")
@@ -112,7 +114,7 @@ def evaluations() -> dict[str, np.ndarray]:
     """Power evaluations of a CDT per second on one core."""
     design, table = load_design("d1"), WorkTable.of(MOMENTS)
     by_hand, step_fast = ByHand(design), pylinkage_six_bar(design)
-    exact = cycles(design, table).work[0, 0] * design.linkage.cadence / (2 * math.pi)
+    exact = cycles(design, table).work[0, 0] * turns_per_second(design.linkage.cadence)
     assert abs(by_hand.power() / exact - 1) < 2e-3, "not the same power"
     drawn = population(design, DESIGNS)
     batch = with_lengths(design, drawn[..., None])
@@ -122,13 +124,13 @@ def evaluations() -> dict[str, np.ndarray]:
     seated = np.insert(drawn[:, : DESIGNS // 4].T, [len(drawn)] * len(for_all.people.search), 0.0, axis=1)
     return rates(
         {
-            f"ours, work of a turn from {TURN_POINTS} angles": (DESIGNS, lambda: cycles(batch, table)),
+            f"ours, work of a turn from {CYCLE_POINTS} angles": (DESIGNS, lambda: cycles(batch, table)),
             "ours, with all constraints": (DESIGNS, lambda: problem.evaluate(drawn.T)),
             "ours, with all constraints and a limit on the ripple": (DESIGNS, lambda: evenly.evaluate(drawn.T)),
             "ours, for people": (DESIGNS // 4, lambda: for_all.evaluate(seated)),
-            f"pylinkage step_fast, kinematics of {TURN_POINTS} angles": (
+            f"pylinkage step_fast, kinematics of {CYCLE_POINTS} angles": (
                 DESIGNS,
-                lambda: step_fast(DESIGNS * TURN_POINTS),
+                lambda: step_fast(DESIGNS * CYCLE_POINTS),
             ),
             "pylinkage step_fast, kinematics of 360 angles": (DESIGNS // 4, lambda: step_fast(DESIGNS // 4 * 360)),
             "fsolve at 360 angles": (2, lambda: [by_hand.power() for _ in range(2)]),
@@ -186,8 +188,8 @@ RATIOS = (
     ("ours, with all constraints and a limit on the ripple", "ours, with all constraints"),
     ("ours, for people", "ours, with all constraints"),
     ("ours, with all constraints", "fsolve at 360 angles"),
-    (f"ours, work of a turn from {TURN_POINTS} angles", f"pylinkage step_fast, kinematics of {TURN_POINTS} angles"),
-    (f"ours, work of a turn from {TURN_POINTS} angles", "pylinkage step_fast, kinematics of 360 angles"),
+    (f"ours, work of a turn from {CYCLE_POINTS} angles", f"pylinkage step_fast, kinematics of {CYCLE_POINTS} angles"),
+    (f"ours, work of a turn from {CYCLE_POINTS} angles", "pylinkage step_fast, kinematics of 360 angles"),
     ("batch path: simulate, compiled", "single path: simulate"),
     ("batch path: simulate, compiled", "bare rollout, one thread"),
     ("stepping of the batch path, one thread", "bare rollout, one thread"),

@@ -22,7 +22,8 @@ from fes_mj.optimization.pareto import pareto_front
 from fes_mj.optimization.problem import Problem
 from fes_mj.optimization.search import Result
 from fes_mj.optimization.winner import Winner, assess, gain
-from fes_mj.statics.cycles import WorkTable, joint_speeds, uncertain_table
+from fes_mj.statics.cycles import joint_speeds
+from fes_mj.statics.work_table import WorkTable, uncertain_table
 
 FOLDER = Path("results/optimization")
 SEEDS, BUDGET, WORKERS = 5, 50_000, Workers(jobs=2)

@@ -12,6 +12,7 @@ import numpy as np
 from fes_mj.common.markdown import Table
 from fes_mj.common.parallel import Workers
 from fes_mj.common.provenance import provenance
+from fes_mj.common.units import turns_per_second
 from fes_mj.common.writing import json_text, write_text
 from fes_mj.fit.population import fit_population
 from fes_mj.fit.seat import Seats, best_seats, fit_seat, seat_text
@@ -25,7 +26,8 @@ from fes_mj.optimization.optimize import run_searches
 from fes_mj.optimization.people import sampled
 from fes_mj.optimization.problem import Problem
 from fes_mj.optimization.winner import Winner, assess
-from fes_mj.statics.cycles import WorkTable, cycles, joint_speeds
+from fes_mj.statics.cycles import cycles, joint_speeds
+from fes_mj.statics.work_table import WorkTable
 
 FOLDER = Path("results/optimization")
 MOMENTS = load_moments("p1p2")
@@ -60,7 +62,7 @@ def fitted_speeds(design: Design) -> PerJoint[np.ndarray]:
     seats, _ = best_seats(design, thigh, shank, TABLE)
     batch = design.with_rider(thigh=thigh[:, None], shank=shank[:, None])
     turn = cycles(Seats(*(each[:, None] for each in seats)).moved(batch), TABLE)
-    return turn.travel.map(lambda travel: np.degrees(travel) * design.linkage.cadence / (2 * np.pi))
+    return turn.travel.map(lambda travel: np.degrees(travel) * turns_per_second(design.linkage.cadence))
 
 
 def problem(target: str, statistic: str) -> Problem:

@@ -21,7 +21,6 @@ from fes_mj.moments.files import load_moments
 from fes_mj.moments.joint_moments import GROUPS, JointMoments
 from fes_mj.moments.samples import sampled_coefficients
 from fes_mj.moments.torque_velocity import TorqueVelocity, drawn_relations, stacked
-from fes_mj.moments.uncertainty import independent_deviations
 
 # As data/error_budget.toml has them; the last has no effect on a mean power.
 MOMENTS, DIMENSIONS, SPEED, LAG = "moments", "dimensions", "speed dependence", "lag"
@@ -92,7 +91,7 @@ def _coefficients(moments: JointMoments, count: int) -> FloatArray:
     shipped = load_moments(moments.name).covariance if moments.name in GROUPS else None
     if shipped is not None and np.array_equal(covariance, shipped):
         return _spread(sampled_coefficients(moments.name), count)
-    deviations = independent_deviations(covariance)
+    deviations = np.concatenate([*moments.deviations])
     scores = np.random.default_rng(_seed(moments.name)).standard_normal((count, deviations.shape[1]))
     return np.asarray(np.concatenate([*moments.coefficients]) + np.einsum("cd,fd->cf", scores, deviations))
 

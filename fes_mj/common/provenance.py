@@ -38,15 +38,33 @@ def _name(path: Path) -> str:
 
 
 def digest(value: Any) -> str:
-    """SHA-256 of all that a value holds, numbers to the last bit: nested data classes, arrays, tuples, plain values."""
-    if isinstance(value, np.ndarray):
-        content = value.tobytes()
-    elif isinstance(value, (list, tuple)):
-        content = "".join(map(digest, value)).encode()
-    elif dataclasses.is_dataclass(value):
-        content = "".join(digest(getattr(value, field.name)) for field in dataclasses.fields(value)).encode()
-    elif hasattr(value, "__dict__"):
-        content = "".join(map(digest, vars(value).values())).encode()
-    else:
-        content = repr(value).encode()
-    return hashlib.sha256(content).hexdigest()
+    """SHA-256 of all that a value holds, its types, names and shapes, numbers to the last bit, in the order it is in.
+
+    value: data classes, dictionaries, lists, tuples, arrays and plain values, nested. Raises TypeError for others.
+    """
+    return hashlib.sha256(_encoded(value)).hexdigest()
+
+
+def _encoded(value: Any) -> bytes:
+    """The parts of a value after the name of its type, each after its length: different values have different bytes."""
+    name = type(value).__qualname__
+    match value:
+        case np.ndarray() if not value.dtype.hasobject:
+            return _joined(name, str(value.dtype), repr(value.shape), value.tobytes())
+        case list() | tuple():
+            return _joined(name, *map(_encoded, value))
+        case dict():
+            return _joined(name, *(_encoded(part) for item in value.items() for part in item))
+        case bytes() | str():
+            return _joined(name, value)
+        case None | bool() | int() | float() | complex() | np.generic() | Path():
+            return _joined(name, repr(value))
+    if dataclasses.is_dataclass(value):
+        values = {field.name: getattr(value, field.name) for field in dataclasses.fields(value)}
+        return _joined(name, _encoded(values))
+    raise TypeError(f"{name}: no digest of such a value")
+
+
+def _joined(*parts: str | bytes) -> bytes:
+    encoded = [part.encode("utf-8", "surrogatepass") if isinstance(part, str) else part for part in parts]
+    return b"".join(len(part).to_bytes(8) + part for part in encoded)

@@ -12,7 +12,7 @@ from fes_mj.fit.seat import SEAT_LIMITS, SeatLimits, best_seats, score
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.riders import SAMPLES, Legs, Population, populations
 from fes_mj.moments.joint_moments import JointMoments
-from fes_mj.statics.cycles import WorkTable
+from fes_mj.statics.work_table import WorkTable
 
 SEATS = ("unmoved", "fitted")
 PEOPLE = {"men": "man", "women": "woman"}

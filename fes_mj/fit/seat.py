@@ -14,12 +14,14 @@ import numpy as np
 
 from fes_mj.common.arrays import BoolArray, FloatArray
 from fes_mj.common.errors import InputError
+from fes_mj.common.units import turns_per_second
 from fes_mj.linkage.assembly import LEAST_CLEARANCE, grashof_margin
 from fes_mj.linkage.design import Design, Rider
 from fes_mj.linkage.turning import turning
 from fes_mj.moments.joint_moments import JointMoments
-from fes_mj.statics.cycles import Cycles, WorkTable, cycles
+from fes_mj.statics.cycles import Cycles, cycles
 from fes_mj.statics.turn import QuasiStatic, quasi_static
+from fes_mj.statics.work_table import WorkTable
 
 # What a degree outside the moments' range counts as, W/deg. A choice: the range comes first, power second. A degree of
 # which nothing is known would have to win a third of a design's power.
@@ -87,7 +89,7 @@ def score(design: Design, table: WorkTable) -> Scores:
     """Of a batch of designs; the first set of moments counts."""
     turn = cycles(design, table)
     outside, inside = _outside(turn)
-    power = turn.work[:, 0] * np.ravel(design.linkage.cadence) / (2 * np.pi)
+    power = turn.work[:, 0] * turns_per_second(np.ravel(design.linkage.cadence))
     merit = np.where(turn.turns, power - OUTSIDE_COST * np.degrees(outside), _NO_TURN + turn.turning.reach)
     return Scores(turn.turns & inside, outside, power, merit)
 
@@ -96,8 +98,7 @@ def _outside(turn: Cycles) -> tuple[FloatArray, BoolArray]:
     """How far joints leave the moments' range, added up, rad, and whether both enter it; shape (designs,)."""
     total, inside = np.zeros(turn.turns.shape), np.ones(turn.turns.shape, bool)
     for joint, (bottom, top) in turn.reference.ranges.items():
-        middle = (turn.low[joint] + turn.high[joint]) / 2
-        shift = turn.reference.around(joint, middle) - middle
+        shift = turn.reference.turns_to_range(joint, turn.low[joint], turn.high[joint])
         low, high = turn.low[joint] + shift, turn.high[joint] + shift
         total += np.maximum(bottom - low, 0) + np.maximum(high - top, 0)
         inside &= (high > bottom) & (low < top)

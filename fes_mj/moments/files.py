@@ -10,7 +10,7 @@ import numpy as np
 from fes_mj.common.errors import InputError
 from fes_mj.common.reading import DATA
 from fes_mj.common.text import printable
-from fes_mj.common.units import RPM
+from fes_mj.common.units import RPM, turns_per_second
 from fes_mj.common.writing import csv_text
 from fes_mj.linkage import kinematics
 from fes_mj.moments.fourier import fit, fourier, gaps
@@ -62,7 +62,7 @@ class Measurement:
             "largest_gap_deg": math.degrees(self.largest_gap),
             "power_mean_W": sum(moments.power_mean),
             "power_sd_W": self.power_sd,
-            "work_per_turn_J": 2 * math.pi * sum(moments.power_mean) / cadence,
+            "work_per_turn_J": sum(moments.power_mean) / turns_per_second(cadence),
             "cadence_rpm": cadence / RPM,
             "warnings": [each._asdict() for each in moments.misreadings],
         }

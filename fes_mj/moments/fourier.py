@@ -40,16 +40,14 @@ def fit(angle: FloatArray, values: FloatArray) -> FloatArray:
     angle, values = np.concatenate([angle, bridge[0]]), np.concatenate([values, bridge[1]])
     blocks = [slice(start, start + _BLOCK) for start in range(0, len(angle), _BLOCK)]  # a day of samples fits in memory
     roughness, found = np.diag(_WEIGHTS[0] * _ROUGHNESS), np.zeros((TERMS, values.shape[1]))
-    # einsum, not BLAS, whose threads would make the last bits depend on how many there are
-    normal = sum(np.einsum("ij,ik->jk", terms, terms) for terms in (fourier(angle[block]) for block in blocks))
-    normal = normal / len(angle)
+    normal = np.sum([terms.T @ terms for terms in (fourier(angle[block]) for block in blocks)], axis=0) / len(angle)
     for _ in range(_PASSES):
         missed, square = -roughness @ found, np.zeros(values.shape[1])
         for block in blocks:
             terms = fourier(angle[block])
-            miss = values[block] - np.einsum("ij,jk->ik", terms, found)
-            missed += np.einsum("ij,ik->jk", terms, miss) / len(angle)
-            square += np.einsum("ik,ik->k", miss, miss) / len(angle)
+            miss = values[block] - terms @ found
+            missed += terms.T @ miss / len(angle)
+            square += np.sum(miss**2, axis=0) / len(angle)
         found += np.linalg.solve(normal + roughness, missed)
     return _smoothed(found, square, normal, values)
 

@@ -15,6 +15,7 @@ from fes_mj.moments.torque_velocity import TorqueVelocity
 
 GROUPS = ("p1p2", "p1p3")
 COLUMNS = ("crank_angle_deg", "knee_Nm", "hip_Nm")
+_NEGLIGIBLE = 1e-9  # part of the largest variance of moments; directions below it are rounding
 TURN_POINTS = 720  # of sums over the measured turn: exact for the products of harmonics that matter
 
 
@@ -52,8 +53,31 @@ class JointMoments:
     @cached_property
     def coefficients(self) -> PerJoint[FloatArray]:
         """Of the Fourier series of each moment's smooth curve through the samples (fourier.fit), N m, shape (49,)."""
-        found = fit(self.crank_angle, np.column_stack([self.knee, self.hip]))
-        return PerJoint(*found.T.copy())  # lie in memory as after a pickle: another process gets the same last bits
+        fitted = fit(self.crank_angle, np.column_stack([self.knee, self.hip]))
+        return PerJoint(*np.ascontiguousarray(fitted.T))
+
+    @cached_property
+    def deviations(self) -> PerJoint[FloatArray]:
+        """One standard deviation of the coefficients along each of the directions that vary, shape (49, directions).
+
+        Coefficients are their mean and these, each times a standard normal number of its own. Raises InputError for
+        moments whose covariance is not known.
+        """
+        if self.covariance is None:
+            raise InputError(
+                f"{self.name}: nothing is known of the error of these moments; only a rider group's have one"
+            )
+        variance, directions = np.linalg.eigh(self.covariance)
+        large = variance > _NEGLIGIBLE * variance[-1]
+        return PerJoint(*np.split(directions[:, large] * np.sqrt(variance[large]), 2))
+
+    def __getstate__(self) -> dict[str, Any]:
+        """With all that linear algebra makes of them: its last bits depend on threads, a worker process has fewer."""
+        return (
+            self.__dict__
+            | {"coefficients": self.coefficients}
+            | ({} if self.covariance is None else {"deviations": self.deviations})
+        )
 
     def at(self, crank_angle: Any) -> PerJoint[FloatArray]:
         """Moments at crank angles from top dead centre, rad, any shape, N m."""

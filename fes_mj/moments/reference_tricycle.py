@@ -72,6 +72,14 @@ class ReferenceTricycle:
         middle = sum(self.ranges[joint]) / 2
         return np.asarray(angle - 2 * np.pi * np.floor((angle - middle) / (2 * np.pi) + 0.5))
 
+    def turns_to_range(self, joint: str, low: Any, high: Any) -> FloatArray:
+        """Whole turns, rad, that bring the middle of a path from `low` to `high` (any shape) nearest to the range's.
+
+        A path goes as a whole, so that it does not jump where it is far outside.
+        """
+        middle = (low + high) / 2
+        return np.asarray(self.around(joint, middle) - middle)
+
     def excess(self, joint: str, angle: Any) -> FloatArray:
         """How far angles (rad, any shape) lie beyond the nearer end of the range, rad; negative below it, 0 inside."""
         angle = self.around(joint, angle)

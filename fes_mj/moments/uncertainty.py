@@ -16,8 +16,6 @@ from fes_mj.moments.fourier import fourier
 from fes_mj.moments.reference_tricycle import ReferenceTricycle
 from fes_mj.moments.torque_map import TorqueMap
 
-_NEGLIGIBLE = 1e-9  # part of the largest variance of moments; directions below it are rounding
-
 
 def power_weights(motion: Motion, cadence: Any, torque: TorqueMap | ReferenceTricycle) -> FloatArray:
     """Mean crank power of one leg per Fourier coefficient of knee, then hip moment, W/(N m), shape (98,).
@@ -33,7 +31,7 @@ def power_weights(motion: Motion, cadence: Any, torque: TorqueMap | ReferenceTri
     return np.asarray(cadence * np.concatenate(parts, axis=-1))
 
 
-def instant_power_weights(motion: Motion, cadence: float, torque: TorqueMap) -> FloatArray:
+def instant_power_weights(motion: Motion, cadence: float, torque: TorqueMap | ReferenceTricycle) -> FloatArray:
     """The same of the power at every crank angle of one design, shape (angles, 98): their mean is power_weights."""
     parts = [gain[:, None] * features for gain, features in _gains(motion, cadence, torque)]
     return np.asarray(cadence * np.concatenate(parts, axis=-1))
@@ -51,16 +49,6 @@ def _gains(
         yield gain, fourier(source)
 
 
-def power_rows(motion: Motion, cadence: float, reference: ReferenceTricycle) -> FloatArray:
-    """Crank power of one leg at each crank angle of a motion per Fourier coefficient, W/(N m), shape (angles, 98).
-
-    Their mean over uniform crank angles is what power_weights gives without a torque-velocity relation.
-    """
-    angle, rate = motion.joint_angle, motion.joint_rate
-    rows = [rate[j][:, None] * fourier(reference.source_angle(j, angle[j], rate[j])) for j in JOINTS]
-    return np.asarray(cadence * np.concatenate(rows, axis=1))
-
-
 def with_sd(value: float, deviation: float | None, digits: int = 2) -> str:
     """A value with its standard deviation, where that is known."""
     return f"{value:.{digits}f}" + ("" if deviation is None else f" +- {deviation:.{digits}f}")
@@ -69,14 +57,3 @@ def with_sd(value: float, deviation: float | None, digits: int = 2) -> str:
 def standard_deviation(weights: FloatArray, covariance: FloatArray) -> float:
     """Of the linear functional with these weights, shape (98,), of coefficients with this covariance."""
     return float(np.sqrt(weights @ covariance @ weights))
-
-
-def independent_deviations(covariance: FloatArray) -> FloatArray:
-    """One standard deviation of coefficients along each of the directions that vary, shape (98, directions).
-
-    Coefficients are their mean and these, each times a standard normal number of its own.
-    """
-    variance, directions = np.linalg.eigh(covariance)
-    large = variance > _NEGLIGIBLE * variance[-1]
-    # rounded: the last bits depend on the threads that the library uses, and results must not
-    return np.asarray(np.round(directions[:, large] * np.sqrt(variance[large]), 10))

@@ -14,7 +14,7 @@ from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.torque_map import torque_map
 from fes_mj.riding.ride import Ride, Road
 from fes_mj.riding.ripple import even_ripple
-from fes_mj.statics.characteristics import energy_swing
+from fes_mj.statics.characteristics import energy_fluctuation
 from fes_mj.statics.turn import virtual_work
 
 
@@ -23,8 +23,7 @@ def fluctuation(design: Design, moments: JointMoments) -> FloatArray:
 
     Largest less smallest surplus of the work done over the mean, by the work of a turn: what a flywheel has to store.
     """
-    crank_moment = _both_legs(solve(design, FULL_TURN[::2]), moments)
-    return np.atleast_1d(energy_swing(crank_moment, 1.0) / (2 * np.pi * np.abs(crank_moment.mean(axis=-1))))
+    return np.atleast_1d(energy_fluctuation(_both_legs(solve(design, FULL_TURN[::2]), moments)))
 
 
 @dataclass(frozen=True)

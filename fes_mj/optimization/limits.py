@@ -187,8 +187,7 @@ def motion_values(
 def _overlap(joint: str, turn: Cycles, reference: ReferenceTricycle) -> FloatArray:
     """How far a joint comes into the range of the moments, from whichever side, deg, shape (n,); not above 0: never."""
     low, high = turn.low[joint], turn.high[joint]
-    (bottom, top), middle = reference.ranges[joint], (low + high) / 2
-    shift = reference.around(joint, middle) - middle
+    (bottom, top), shift = reference.ranges[joint], reference.turns_to_range(joint, low, high)
     overlap = np.degrees(np.minimum(high + shift - bottom, top - low - shift))
     # the angle beside a dead centre is too sharp for the parabola that found its extreme
     return np.where(turn.outside[1][joint], np.minimum(overlap, 0.0), overlap)

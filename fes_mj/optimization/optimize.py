@@ -13,6 +13,7 @@ from numpy.random import SeedSequence
 from fes_mj.common.arrays import FloatArray
 from fes_mj.common.errors import InputError
 from fes_mj.common.parallel import HERE, Workers, run_tasks
+from fes_mj.common.units import turns_per_second
 from fes_mj.linkage.design import Design
 from fes_mj.moments.files import load_moments
 from fes_mj.moments.joint_moments import GROUPS, JointMoments
@@ -20,7 +21,8 @@ from fes_mj.optimization.findings import Findings
 from fes_mj.optimization.pareto import Front, pareto_front
 from fes_mj.optimization.problem import Evaluation, Problem, make_problem
 from fes_mj.optimization.search import BUDGETS, METHODS, BudgetSpentError, Result, Search, Start
-from fes_mj.statics.cycles import WorkTable, cycles
+from fes_mj.statics.cycles import cycles
+from fes_mj.statics.work_table import WorkTable
 
 
 @dataclass(frozen=True)
@@ -69,8 +71,7 @@ class Optimum:
                 "up_m": (ground - design.linkage.ground).imag,
                 "seat_angle_deg": math.degrees(design.linkage.seat_angle),
                 "power_mean_W": float(cycles(design, self.problem.table).work[0, 0])
-                * design.linkage.cadence
-                / (2 * np.pi),
+                * turns_per_second(design.linkage.cadence),
             }
             for design in designs
         ]

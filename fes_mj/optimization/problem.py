@@ -9,7 +9,7 @@ import numpy as np
 
 from fes_mj.common.arrays import BoolArray, FloatArray
 from fes_mj.common.errors import InputError
-from fes_mj.common.units import RPM
+from fes_mj.common.units import RPM, turns_per_second
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.design_file import load_design
 from fes_mj.linkage.joints import JOINTS, PerJoint
@@ -29,7 +29,8 @@ from fes_mj.optimization.limits import (
     motion_values,
 )
 from fes_mj.optimization.people import ONE_RIDER, People
-from fes_mj.statics.cycles import TURN_POINTS, WorkTable, cycles, joint_speeds, uncertain_table
+from fes_mj.statics.cycles import CYCLE_POINTS, cycles, joint_speeds
+from fes_mj.statics.work_table import WorkTable, uncertain_table
 
 LENGTH_COUNT = len(VARIED) - 1  # all variables but the gear ratio, which comes last
 # A design below any feasible one, and each margin it was refused too early to have counts as ten scales.
@@ -73,7 +74,7 @@ class Problem:
 
     template: kind, rider, seat and coupler angle of all designs. table: the sets of moments; the first is the one whose
     power counts. joint_speed: largest mean absolute speed of each joint, deg/s. caution: with moments as of
-    cycles.uncertain_table, how many standard deviations of the gain over `baseline` (power of a design to beat,
+    work_table.uncertain_table, how many standard deviations of the gain over `baseline` (power of a design to beat,
     shape (sets,)) are taken off it. people: who else rides it; the limits on joints and their speeds hold for each, and
     the power is the people's. ripple: of the crank speed when ridden, if it is limited.
     """
@@ -86,7 +87,7 @@ class Problem:
     baseline: FloatArray | float = 0.0
     people: People = ONE_RIDER
     ripple: RippleLimit | None = None
-    points: int = TURN_POINTS
+    points: int = CYCLE_POINTS
 
     def __post_init__(self) -> None:
         for joint, speed in self.joint_speed.items():
@@ -169,13 +170,13 @@ class Problem:
             turn = cycles(ridden, self.table, self.points)
             # cadence and joint speeds are those at gear ratio 1
             cadence, riders = self._cadence_of_one, self.people.count
-            speeds = turn.travel.map(lambda travel: np.degrees(travel) * cadence / (2 * np.pi))
+            speeds = turn.travel.map(lambda travel: np.degrees(travel) * turns_per_second(cadence))
             if chosen:
                 fastest = np.minimum(*(self.joint_speed[joint] / speeds[joint] for joint in JOINTS))
                 for_all = fastest.reshape(-1, riders).min(axis=1)
                 gear_ratio[sound] = np.fmin(for_all * (1 - _HAIR), self.gear_ratios[1])
             ratios = np.repeat(gear_ratio[sound], riders)
-            power[sound] = self.people.power(turn.work * (cadence / (2 * np.pi) * ratios[:, None]))
+            power[sound] = self.people.power(turn.work * (turns_per_second(cadence) * ratios[:, None]))
             by_rider = motion_values(turn, self.table.measured_on, speeds, ratios)
             motion[sound] = self._worst(np.column_stack([by_rider, *self._ripple(ridden, by_rider, ratios)]))
         values = np.hstack([lengths, motion])
@@ -257,6 +258,6 @@ def make_problem(
     # a hair above, so that the design itself is within its own limits
     own, asked = joint_speeds(other, table).map(lambda speed: speed * (1 + 1e-9)), PerJoint(knee_speed, hip_speed)
     speed = PerJoint(*(one if limit is None else limit for one, limit in zip(own, asked, strict=True)))
-    baseline = cycles(other, table).work[0] * other.linkage.cadence / (2 * math.pi)
+    baseline = cycles(other, table).work[0] * turns_per_second(other.linkage.cadence)
     even = None if ripple is None else RippleLimit(ripple, moments)
     return Problem(template, table, load_limits(limits), speed, caution, baseline, people, even)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from fes_mj.common.arrays import FloatArray
+from fes_mj.common.units import turns_per_second
 from fes_mj.crosscheck.turn_case import Case
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.joints import PerJoint
@@ -13,8 +14,9 @@ from fes_mj.linkage.variables import lengths, with_lengths
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.riding.ride import Ride
 from fes_mj.riding.ripple import steady_ripple
-from fes_mj.statics.cycles import WorkTable, cycles, joint_speeds
+from fes_mj.statics.cycles import cycles, joint_speeds
 from fes_mj.statics.turn import difference_sd, quasi_static
+from fes_mj.statics.work_table import WorkTable
 
 if TYPE_CHECKING:
     from fes_mj.optimization.optimize import Optimum
@@ -42,7 +44,7 @@ class Gain(NamedTuple):
 
 
 def gain(power: FloatArray, baseline: FloatArray) -> Gain:
-    """Gain of one design over another, both powers by the same cycles.uncertain_table, shape (sets,)."""
+    """Gain of one design over another, both powers by the same work_table.uncertain_table, shape (sets,)."""
     difference = power - baseline
     return Gain(float(difference[0]), float(np.linalg.norm(difference[1:])))
 
@@ -75,7 +77,7 @@ def to_rider(design: Design, table: WorkTable, random: np.random.Generator) -> T
 
 
 def _tolerance(designs: Design, table: WorkTable) -> Tolerance:
-    power = cycles(designs, table).work[:, 0] * designs.linkage.cadence / (2 * np.pi)
+    power = cycles(designs, table).work[:, 0] * turns_per_second(designs.linkage.cadence)
     turning = np.isfinite(power)
     powers = np.where(turning, power, 0.0)
     return Tolerance(float(turning.mean()), float(np.percentile(powers, PERCENTILE)), float(np.median(powers)))

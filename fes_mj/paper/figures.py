@@ -16,7 +16,7 @@ from fes_mj.linkage.kinematics import solve
 from fes_mj.moments.fourier import TERMS
 from fes_mj.moments.joint_moments import GROUPS
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
-from fes_mj.moments.uncertainty import power_rows
+from fes_mj.moments.uncertainty import instant_power_weights
 from fes_mj.paper.budget_figure import budget_figure
 from fes_mj.paper.known import STAGES, Known
 from fes_mj.paper.left_out import rms
@@ -272,7 +272,7 @@ def _powers(axes: Any, runs: Runs, known: Known, name: str) -> None:
     """Quasi-static power of knee, hip and, with its sd, both; of the curves that ship MuJoCo's too, with residuals."""
     for ax, group, title, posterior in _before_and_after(axes, known):
         static = runs.static[name, group]
-        rows = power_rows(static.motion, static.cadence, PAPER_TRICYCLE)
+        rows = instant_power_weights(static.motion, static.cadence, PAPER_TRICYCLE)
         for joint, start in zip(JOINTS, (0, TERMS), strict=True):
             part = slice(start, start + TERMS)
             curve = over_turn(static.crank_angle, rows[:, part] @ posterior.mean[part])

@@ -12,7 +12,7 @@ from fes_mj.linkage.assembly import transmission_angles
 from fes_mj.linkage.joints import JOINTS
 from fes_mj.moments.fourier import fourier
 from fes_mj.moments.joint_moments import GROUPS
-from fes_mj.moments.uncertainty import power_rows, with_sd
+from fes_mj.moments.uncertainty import instant_power_weights, with_sd
 from fes_mj.paper.captions import captioned
 from fes_mj.paper.known import Known
 from fes_mj.paper.runs import Runs
@@ -53,7 +53,7 @@ def distribution_table(runs: Runs, known: Known) -> Table:
     """Section 7.3: how power is spread over the turn, by the joint moments alone: of the mean curves, and sampled."""
     rows = []
     for (name, group), result in runs.static.items():
-        each = power_rows(result.motion, result.cadence, result.torque.reference)
+        each = instant_power_weights(result.motion, result.cadence, result.torque.reference)
         sampled = distribution(known.text.curves[group] @ each.T)
         cells = [
             (float(of_mean), with_sd(float(values.mean()), float(values.std()), digits))

@@ -21,7 +21,7 @@ from fes_mj.linkage.kinematics import solve
 from fes_mj.moments.fourier import TERMS
 from fes_mj.moments.joint_moments import GROUPS
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
-from fes_mj.moments.uncertainty import power_rows
+from fes_mj.moments.uncertainty import instant_power_weights
 from fes_mj.paper.evidence import Evidence
 from fes_mj.paper.reconstruction import Hyperparameters, draw
 
@@ -122,6 +122,6 @@ def _batches(rows: list[Evidence], group: str, hyperparameters: Hyperparameters)
 def _rows(name: str, joint: str) -> FloatArray:
     """Power at _ANGLES per coefficient, of the leg or of one joint alone, W/(N m), shape (angles, 98)."""
     design = load_design(name)
-    rows = power_rows(solve(design, _ANGLES), design.linkage.cadence, PAPER_TRICYCLE)
+    rows = instant_power_weights(solve(design, _ANGLES), design.linkage.cadence, PAPER_TRICYCLE)
     counts = np.repeat([joint in ("", each) for each in JOINTS], TERMS)
     return np.asarray(rows * counts)

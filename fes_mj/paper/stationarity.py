@@ -6,6 +6,7 @@ import numpy as np
 
 from fes_mj.common.arrays import FloatArray
 from fes_mj.common.markdown import Table
+from fes_mj.common.units import turns_per_second
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.design_file import DIMENSIONS, load_design
 from fes_mj.linkage.variables import LENGTHS, lengths, with_lengths
@@ -13,7 +14,8 @@ from fes_mj.moments.files import load_moments
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.uncertainty import with_sd
 from fes_mj.paper.captions import captioned
-from fes_mj.statics.cycles import cycles, uncertain_table
+from fes_mj.statics.cycles import cycles
+from fes_mj.statics.work_table import uncertain_table
 
 # Each design with the group that it was made for (Section 7; docs/errata.md, E14).
 MADE_FOR = {"r1": "p1p2", "r2": "p1p3", "d1": "p1p2", "d2": "p1p3"}
@@ -33,7 +35,7 @@ def slopes(design: Design, moments: JointMoments) -> dict[str, tuple[FloatArray,
     found = cycles(
         with_lengths(design, (lengths(design)[:, None] + shifts)[..., None]), uncertain_table(moments), _POINTS
     )
-    power = found.work * design.linkage.cadence / (2 * np.pi)
+    power = found.work * turns_per_second(design.linkage.cadence)
     slowed = power * (found.travel.knee[0] / found.travel.knee)[:, None]
     each = {}
     for held, values in zip(HELD, (power, slowed), strict=True):

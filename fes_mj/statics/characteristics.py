@@ -24,6 +24,13 @@ def energy_swing(power: FloatArray, cadence: Any) -> Any:
     return np.ptp(np.cumsum(power - power.mean(axis=-1, keepdims=True), axis=-1), axis=-1) * seconds
 
 
+def energy_fluctuation(power: FloatArray, turns: int = 1) -> Any:
+    """Coefficient of fluctuation of energy: energy_swing per work of a turn; power: W or N m, over so many turns."""
+    mean = np.abs(power.mean(axis=-1))
+    # at one turn a second the mean power is the work of a turn
+    return turns * energy_swing(power, 2 * np.pi) / np.where(mean > 0, mean, np.nan)
+
+
 def extent(motion: Motion) -> tuple[Any, Any]:
     """Length and height of the box around all joints over the turn, m."""
     points = np.stack(np.broadcast_arrays(*(jet.value for jet in motion.points.values())))
@@ -33,8 +40,7 @@ def extent(motion: Motion) -> tuple[Any, Any]:
 def power_characteristics(power: FloatArray, turns: int = 1) -> dict[str, Any]:
     """Of crank power over so many whole turns, W, as JSON names and units it.
 
-    energy_fluctuation: coefficient of fluctuation of energy, the swing of the crank's energy against a constant load
-    per work of a turn. The last two say nothing without a positive mean: NaN.
+    The last two say nothing without a positive mean: NaN.
     """
     mean, highest = power.mean(axis=-1), power.max(axis=-1)
     positive = np.where(mean > 0, mean, np.nan)
@@ -42,8 +48,7 @@ def power_characteristics(power: FloatArray, turns: int = 1) -> dict[str, Any]:
         "inactive_zone_share": inactive_share(power),
         "power_peak_to_peak_W": highest - power.min(axis=-1),
         "power_peak_to_mean": highest / positive,
-        # at one turn a second the mean power is the work of a turn
-        "energy_fluctuation": turns * energy_swing(power, 2 * np.pi) / positive,
+        "energy_fluctuation": np.where(mean > 0, energy_fluctuation(power, turns), np.nan),
     }
 
 

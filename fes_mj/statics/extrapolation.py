@@ -90,9 +90,8 @@ def beyond(reference: ReferenceTricycle, angle: PerJoint[FloatArray]) -> PerJoin
 
     def of_joint(joint: str) -> FloatArray:
         path = angle[joint]
-        middle = (path.max(axis=-1, keepdims=True) + path.min(axis=-1, keepdims=True)) / 2
-        to_range = reference.around(joint, middle) - middle - sum(reference.ranges[joint]) / 2
-        distance = path + to_range
+        low, high = (end(axis=-1, keepdims=True) for end in (path.min, path.max))
+        distance = path + (reference.turns_to_range(joint, low, high) - sum(reference.ranges[joint]) / 2)
         np.abs(distance, out=distance)
         distance -= reference.half_range(joint) + NO_MORE
         return np.asarray(distance)

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fes_mj.common.errors import InputError, UnstableError
-from fes_mj.common.units import RPM
+from fes_mj.common.units import RPM, turns_per_second
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.joints import JOINTS
 from fes_mj.linkage.kinematics import solve
@@ -15,8 +15,9 @@ from fes_mj.linkage.variables import COMPONENTS, VARIABLES, replaced
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.torque_map import torque_map
 from fes_mj.statics.characteristics import motion_characteristics, power_characteristics
-from fes_mj.statics.cycles import Cycles, WorkTable, cycles, uncertain_table
+from fes_mj.statics.cycles import Cycles, cycles
 from fes_mj.statics.turn import virtual_work
+from fes_mj.statics.work_table import WorkTable, uncertain_table
 from fes_mj.sweep.study import NAMES, Study
 
 Columns: TypeAlias = dict[str, NDArray[Any]]
@@ -84,7 +85,7 @@ def _static(design: Design, values: Columns, moments: JointMoments, count: int) 
     certain = moments.covariance is None
     turn = cycles(batch, WorkTable.of(moments) if certain else uncertain_table(moments))
     rpm = values.get("cadence_rpm", np.ravel(batch.linkage.cadence) / RPM)
-    turns_per_s = rpm * RPM / (2 * np.pi)
+    turns_per_s = turns_per_second(rpm * RPM)
     why = _first_reason(_obstacles(turn, rpm), count)
     work = np.where((why == "")[:, None], turn.work, np.nan)
     power = work * np.reshape(turns_per_s, (-1, 1))

@@ -9,6 +9,7 @@ import numpy as np
 from fes_mj.common.arrays import FloatArray
 from fes_mj.common.checks import Check, check
 from fes_mj.common.errors import UnstableError
+from fes_mj.common.units import turns_per_second
 from fes_mj.linkage.assembly import joint_ranges
 from fes_mj.simulation.mjcf import SERVO_GAIN
 from fes_mj.verification.case import VerificationCase
@@ -72,7 +73,7 @@ def printed_checks(case: VerificationCase) -> list[Check]:
     wanted = np.array([*printed.knee_range, *printed.hip_range])
     checks = [case.check("joint_range", np.abs(joint_ranges(case.design) - wanted).max())]
     if case.moments.name in printed.power and case.moments.torque_velocity is None:  # the paper knows no speed
-        power = case.static.work_per_turn * case.design.linkage.cadence / (2 * math.pi)  # printed at its own cadence
+        power = case.static.work_per_turn * turns_per_second(case.design.linkage.cadence)  # printed at its own cadence
         checks.append(case.check("printed_power", abs(power - printed.power[case.moments.name])))
     return checks
 

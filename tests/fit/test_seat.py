@@ -12,7 +12,7 @@ from fes_mj.fit.seat import MOVE_COST, SEAT_LIMITS, SeatLimits, Seats, best_seat
 from fes_mj.linkage.design import Rider
 from fes_mj.linkage.kinematics import solve
 from fes_mj.linkage.riders import populations
-from fes_mj.statics.cycles import WorkTable
+from fes_mj.statics.work_table import WorkTable
 
 # W: a fifth of the smallest standard deviation of a power with a moved seat, 0.25 W
 SEARCH_ERROR = 0.05

@@ -12,7 +12,8 @@ from fes_mj.linkage.design_file import load_design
 from fes_mj.linkage.kinematics import joint_angles, positions
 from fes_mj.linkage.turning import turning
 from fes_mj.moments.files import load_moments
-from fes_mj.statics.cycles import WorkTable, cycles
+from fes_mj.statics.cycles import cycles
+from fes_mj.statics.work_table import WorkTable
 
 
 def test_what_cannot_close_is_named_with_its_crank_angle() -> None:

@@ -1,11 +1,13 @@
 """Joint moments from CSV files: what is read, and what is refused with which words."""
 
+import pickle
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from fes_mj.common.errors import InputError
+from fes_mj.linkage.joints import JOINTS
 from fes_mj.moments.files import load_moments
 
 HEADER = "crank_angle_deg,knee_Nm,hip_Nm\n"
@@ -60,3 +62,22 @@ def test_unreadable_files(tmp_path: Path) -> None:
     (tmp_path / "binary.csv").write_bytes(b"\xff\xfe\x00")
     with pytest.raises(InputError, match="is not UTF-8 text"):
         load_moments(tmp_path / "binary.csv")
+
+
+def test_a_worker_process_gets_what_linear_algebra_made_of_them() -> None:
+    """Its library has fewer threads: the last bits of coefficients that it made itself could be others."""
+    for name in ("p1p2", Path("examples/trial/trial.toml")):
+        moments = load_moments(name)
+        vars(sent := pickle.loads(pickle.dumps(moments))).pop("crank_angle")  # nothing can be made anew
+        for joint in JOINTS:
+            np.testing.assert_array_equal(sent.coefficients[joint], moments.coefficients[joint])
+            np.testing.assert_array_equal(sent.deviations[joint], moments.deviations[joint])
+        deviations = np.concatenate([*moments.deviations])
+        assert deviations @ deviations.T == pytest.approx(moments.covariance, abs=1e-7)
+
+
+def test_moments_of_unknown_error_have_no_deviations(tmp_path: Path) -> None:
+    path = tmp_path / "mine.csv"
+    path.write_text(HEADER + "0,1,1\n120,2,2\n240,3,3\n")
+    with pytest.raises(InputError, match="mine: nothing is known of the error"):
+        _ = load_moments(path).deviations

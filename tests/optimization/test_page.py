@@ -13,8 +13,9 @@ from fes_mj.optimization.evenness import fluctuation
 from fes_mj.optimization.optimize import Optimum
 from fes_mj.optimization.pareto import Front
 from fes_mj.optimization.winner import assess
-from fes_mj.statics.cycles import WorkTable, cycles
+from fes_mj.statics.cycles import cycles
 from fes_mj.statics.turn import quasi_static
+from fes_mj.statics.work_table import WorkTable
 from tests.browser import NEEDS_BROWSER, PHONE, browser, check_on_a_phone
 from tests.optimization.conftest import problem_of
 

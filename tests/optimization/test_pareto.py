@@ -12,7 +12,7 @@ from tests.optimization.conftest import problem_of
 
 def test_the_front_is_feasible_and_nobody_on_it_is_dominated() -> None:
     pytest.importorskip("pymoo")
-    from fes_mj.statics.cycles import WorkTable
+    from fes_mj.statics.work_table import WorkTable
 
     both = tuple(fes_mj.load_moments(group) for group in ("p1p2", "p1p3"))
     problem = replace(problem_of("d1"), table=WorkTable.of(*both))

@@ -13,8 +13,9 @@ from fes_mj.optimization.evenness import RippleLimit
 from fes_mj.optimization.optimize import run_searches
 from fes_mj.optimization.problem import Problem
 from fes_mj.optimization.winner import Winner, assess, gain, to_manufacturing, to_rider
-from fes_mj.statics.cycles import cycles, uncertain_table
+from fes_mj.statics.cycles import cycles
 from fes_mj.statics.turn import difference_sd, quasi_static
+from fes_mj.statics.work_table import uncertain_table
 from tests.optimization.conftest import TABLE, problem_of
 
 MOMENTS = fes_mj.load_moments("p1p2")

@@ -8,8 +8,9 @@ from fes_mj.common.errors import AssemblyError, InputError
 from fes_mj.linkage import kinematics
 from fes_mj.linkage.turning import turning
 from fes_mj.linkage.variables import component, lengths, replaced, with_lengths
-from fes_mj.statics.cycles import WorkTable, cycles, joint_speeds, reversals, uncertain_table
+from fes_mj.statics.cycles import cycles, joint_speeds, reversals
 from fes_mj.statics.turn import QuasiStatic, quasi_static
+from fes_mj.statics.work_table import WorkTable, uncertain_table
 
 FINE = 36_000
 LEGS = 0.03  # m
