@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV ?= .venv
 BIN = $(VENV)/bin
 EXTRAS = video,report,paper,optimize,cluster
-GROUPS = --group test --group lint --group docs
+GROUPS = --group test --group lint --group docs --group mjx
 PIP = $(BIN)/pip install --quiet -c constraints.txt
 PYTEST = $(BIN)/python -m pytest --numprocesses auto --dist worksteal
 
@@ -69,9 +69,13 @@ pictures: $(VENV)/.ready reproduce
 	$(BIN)/python -m studies.ride_env
 	$(BIN)/python -m tools.picture_structure
 
-# Install the other readers of the models, each into an environment of its own, and compare them with MuJoCo.
-readers: $(VENV)/.ready
-	$(BIN)/python -m tools.conformance --build
+# The other readers of the models beside MuJoCo: results/readers.md; most need an environment of their own.
+readers: .readers/.ready
+	$(BIN)/python -m tools.conformance
+
+.readers/.ready: $(VENV)/.ready tools/conformance/readers.py
+	$(BIN)/python -m tools.conformance.build
+	touch $@
 
 # A wheel and an sdist as a user installs them, without constraints, each in an environment of its own: do they simulate?
 dist: $(VENV)/.ready
@@ -95,4 +99,4 @@ $(VENV)/.for-demo $(VENV)/.ready: pyproject.toml constraints.txt
 	touch $@
 
 clean:
-	rm -rf $(VENV) .readers demo dist site docs/reference
+	rm -rf .venv* .readers demo dist site docs/reference

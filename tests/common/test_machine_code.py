@@ -88,7 +88,6 @@ def test_processes_at_once_share_what_they_keep(kept: dict[str, str]) -> None:
     assert run("import outer", **kept) == ["2.0 1"]
 
 
-@pytest.mark.process
 def test_where_nothing_can_be_kept_it_is_made_anew() -> None:
     """Of a function without a file, as of one beside which, and in whose user's folder, nothing can be written."""
     scope: dict[str, object] = {}

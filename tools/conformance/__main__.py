@@ -1,17 +1,16 @@
 """Which tools read the exported models, and how well: run every reader, compare with MuJoCo, write results/readers.*.
 
-    python -m tools.conformance [--build] [READER ...]
+    python -m tools.conformance [READER ...]
 
-A reader runs in its environment .readers/READER, which --build makes; without one it is left out, and the results are
-only printed. Exit code 1 if a reader does not keep what it can be held to.
+A reader runs in this environment or in its own, .readers/READER, which `python -m tools.conformance.build` makes;
+without one it is left out, and the results are only printed. Exit code 1 if a reader does not keep what it can be held
+to.
 """
 
 from __future__ import annotations
 
-import subprocess
 import sys
 import tempfile
-from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
 
@@ -21,7 +20,7 @@ from rich.progress import Progress
 from fes_mj.common.provenance import provenance
 from fes_mj.common.writing import json_text, write_text
 from fes_mj.linkage.design_file import DESIGNS, load_design
-from tools.conformance.asking import ROOT, build, interpreter, reference, rows
+from tools.conformance.asking import ROOT, interpreter, reference, rows
 from tools.conformance.judging import Row
 from tools.conformance.motions import jobs
 from tools.conformance.readers import READERS
@@ -31,7 +30,7 @@ RESULTS = ROOT / "results"
 
 
 def main() -> int:
-    arguments = [argument for argument in sys.argv[1:] if argument != "--build"]
+    arguments = sys.argv[1:]
     unknown = [argument for argument in arguments if argument not in READERS]
     if unknown:
         print(f"unknown reader {unknown[0]!r}; it must be one of {', '.join(READERS)}", file=sys.stderr)
@@ -43,11 +42,8 @@ def main() -> int:
         tasks = jobs(designs, Path(folder))
         references = reference(tasks)
         for name in progress.track(chosen, description="readers"):
-            if "--build" in sys.argv and interpreter(name) is None:
-                with suppress(subprocess.CalledProcessError):  # pip has said why
-                    build(name)
             if interpreter(name) is None:
-                console.print(f"{name}: not installed, left out; --build installs it where it can be had")
+                console.print(f"{name}: not installed, left out; `make readers` installs it where it can be had")
             else:
                 found += rows(name, tasks, references)
     print(table(found))

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import json
-import shutil
 import subprocess
 import sys
 import tempfile
-import tomllib
-import venv
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -18,27 +16,15 @@ from tools.conformance.readers import READERS, Answer, Reader
 
 ROOT = Path(__file__).parents[2]
 SCRIPTS, ENVIRONMENTS = ROOT / "tools" / "readers", ROOT / ".readers"
+HERE = {"mujoco": "mujoco", "mjx": "jax"}  # readers in the environment of the project itself, and what tells
 
 
 def interpreter(name: str) -> Path | None:
-    """The interpreter of a reader's environment, if that was made; MuJoCo is in this one."""
-    if name == "mujoco":
-        return Path(sys.executable)
+    """The interpreter that has a reader: this one, or that of the environment which was made for it, if it was."""
+    if name in HERE:
+        return Path(sys.executable) if find_spec(HERE[name]) else None
     python = ENVIRONMENTS / name / "bin" / "python"
     return python if python.exists() else None
-
-
-def build(name: str) -> None:
-    """Make a reader's environment and install the reader in it; on any failure there is no environment."""
-    groups = tomllib.loads((ROOT / "pyproject.toml").read_text())["dependency-groups"]
-    reader = READERS[name]
-    requirements = [*reader.requirements] or [*groups[name], "-c", str(ROOT / "constraints.txt")]
-    try:
-        venv.create(ENVIRONMENTS / name, with_pip=True, clear=True)
-        subprocess.run([ENVIRONMENTS / name / "bin" / "pip", "install", "--quiet", *requirements], check=True)
-    except BaseException:
-        shutil.rmtree(ENVIRONMENTS / name, ignore_errors=True)
-        raise
 
 
 def ask(script: str, python: Path | str, tasks: list[dict[str, Any]]) -> dict[str, Any]:
@@ -68,7 +54,7 @@ def rows(name: str, tasks: dict[Key, Job], references: dict[Key, Answer]) -> lis
     """Ask a reader and judge its answers."""
     python, reader = interpreter(name), READERS[name]
     if python is None:
-        raise RuntimeError(f"{name}: not installed; `python -m tools.conformance --build {name}` does")
+        raise RuntimeError(f"{name}: not installed; `python -m tools.conformance.build {name}` does")
     if reader.most:
         tasks = {key: _shortened(task, reader.most) for key, task in tasks.items()}
         references = reference(tasks)

@@ -1,0 +1,44 @@
+"""Install the readers of exported models that need an environment of their own, .readers/READER; two at a time.
+
+    python -m tools.conformance.build [READER ...]
+
+A reader that cannot be had is left out, with what pip says.
+"""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+import tomllib
+import venv
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
+
+from tools.conformance.asking import ENVIRONMENTS, HERE, ROOT, interpreter
+from tools.conformance.readers import READERS
+
+
+def build(name: str) -> None:
+    """Make a reader's environment and install the reader in it; on any failure there is no environment."""
+    groups = tomllib.loads((ROOT / "pyproject.toml").read_text())["dependency-groups"]
+    reader = READERS[name]
+    requirements = [*reader.requirements] or [*groups[name], "-c", str(ROOT / "constraints.txt")]
+    try:
+        venv.create(ENVIRONMENTS / name, with_pip=True, clear=True)
+        subprocess.run([ENVIRONMENTS / name / "bin" / "pip", "install", "--quiet", *requirements], check=True)
+    except BaseException:
+        shutil.rmtree(ENVIRONMENTS / name, ignore_errors=True)
+        raise
+
+
+def missing(name: str) -> None:
+    """Build it if it is not there."""
+    if interpreter(name) is None:
+        with suppress(subprocess.CalledProcessError):  # pip has said why
+            build(name)
+
+
+if __name__ == "__main__":
+    with ThreadPoolExecutor(2) as pool:
+        list(pool.map(missing, sys.argv[1:] or READERS.keys() - HERE.keys()))
