@@ -12,21 +12,26 @@ PURPOSE = "Does a pedalling linkage for FES cycling deliver its power when legs 
 # The help lines stand here so that `--help` need not import the commands, nor anything else.
 EXIT_CODES = "Exit codes: 0 agrees, 1 does not, 2 bad input, 3 a needed part is missing, 130 Ctrl-C, 143 SIGTERM."
 COMMANDS = {
-    "simulate": "Simulate a design in MuJoCo and compare its crank power with statics.",
-    "ride": "Ride a design on a road: does it start, keep going, how fast, up which slope?",
-    "static": "Mean crank power of a design by statics, without MuJoCo.",
-    "optimize": "Find linkages with more crank power, within the paper's limits, and simulate them.",
-    "fit": "Find the seat for a rider, or who of a population can ride.",
-    "sweep": "Evaluate many designs, riders, cadences and moments; resumes where it was stopped.",
-    "export": "Write the MJCF model of a design, for other tools.",
-    "validate": "Run every check of the harness on designs, one verdict each.",
-    "explain": "What a check guards against and what usually breaks it.",
-    "reproduce": "Compute the paper's tables and figures and write them beside our own.",
-    "moments": "Show what is understood of a file of joint moments, and convert it.",
-    "stimulation": "When to stimulate which muscles: crank-angle windows for a stimulator.",
-    "explore": "Drag a design's dimensions in the browser and see at once what they do.",
-    "view": "Watch a design run in MuJoCo's interactive viewer.",
+    "Check a design": {
+        "simulate": "Simulate a design in MuJoCo and compare its crank power with statics.",
+        "static": "Mean crank power of designs by statics, without MuJoCo.",
+        "ride": "Ride a design on a road: does it start, keep going, how fast, up which slope?",
+        "validate": "Run every check of the harness on designs, one verdict each; or explain one.",
+    },
+    "Change it": {
+        "explore": "Drag a design's dimensions in the browser and see at once what they do.",
+        "fit": "Find the seat for a rider, or who of a population can ride.",
+        "optimize": "Find linkages with more crank power, within the paper's limits, and simulate them.",
+        "sweep": "Evaluate many designs, riders, cadences and moments; resumes where it was stopped.",
+    },
+    "Data and export": {
+        "moments": "Show what is understood of a file of joint moments, and convert it.",
+        "stimulation": "When to stimulate which muscles: crank-angle windows for a stimulator.",
+        "export": "Write the MJCF model of a design, for other tools.",
+    },
+    "The paper": {"reproduce": "Compute the paper's tables and figures and write them beside our own."},
 }
+MOVED = {"explain": "fes_mj validate --explain CHECK", "view": "fes_mj simulate DESIGN --view"}
 
 
 def main() -> None:
@@ -66,12 +71,8 @@ def _run(arguments: list[str]) -> int:
 
 
 def _help() -> str:
-    rows = [
-        *COMMANDS.items(),
-        ("--help, -h", "Show this, or with a command what it takes."),
-        ("--version", "Show the version."),
-    ]
-    lines = [f"  {name:12}{text}" for name, text in rows]
-    return "\n".join(
-        ["Usage: fes_mj COMMAND [...]", "", PURPOSE, "", *lines, "", EXIT_CODES, "fes_mj COMMAND --help says more."]
-    )
+    rows = {"--help, -h": "Show this, or with a command what it takes.", "--version": "Show the version."}
+    lines = ["Usage: fes_mj COMMAND [...]", "", PURPOSE]
+    for title, commands in {**COMMANDS, "Everywhere": rows}.items():
+        lines += ["", title, *(f"  {name:13}{text}" for name, text in commands.items())]
+    return "\n".join([*lines, "", EXIT_CODES, "fes_mj COMMAND --help says more."])

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 from cyclopts import App, CycloptsError
 
-from fes_mj.cli import AGREES, BAD_INPUT, COMMANDS, DISAGREES, MISSING_PART, PURPOSE
+from fes_mj.cli import AGREES, BAD_INPUT, COMMANDS, DISAGREES, MISSING_PART, MOVED, PURPOSE
 from fes_mj.cli.process import interruption_code
 from fes_mj.common.console import errors
 from fes_mj.common.errors import InputError, MissingPartError, UnstableError
@@ -21,8 +21,9 @@ EXPECTED = {
 LONGEST_MESSAGE = 1000  # characters
 
 app = App(name="fes_mj", help=PURPOSE, suppress_keyboard_interrupt=False)
-for _command, _help in COMMANDS.items():
-    app.command(f"fes_mj.cli.{_command}:{_command}", name=_command, help=_help)
+for _group, _commands in COMMANDS.items():
+    for _command, _help in _commands.items():
+        app.command(f"fes_mj.cli.{_command}:{_command}", name=_command, help=_help, group=_group)
 app.command(
     "fes_mj.cli.completion:install_completion",
     name="--install-completion",
@@ -32,6 +33,10 @@ app.command(
 
 def run(arguments: Sequence[str] | None = None) -> int:
     """Run one command line and return its exit code; every expected failure becomes one message on standard error."""
+    arguments = sys.argv[1:] if arguments is None else arguments
+    if arguments and (now := MOVED.get(arguments[0])):
+        _say(f"{arguments[0]} is now `{now}`")
+        return BAD_INPUT
     try:
         code = app(arguments, exit_on_error=False, print_error=False, result_action="return_value")
         sys.stdout.flush()

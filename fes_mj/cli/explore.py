@@ -1,7 +1,11 @@
 """`fes_mj explore`: the designer's page in the browser."""
 
-from fes_mj.cli.options import MomentsOptions
-from fes_mj.common.errors import InputError
+from typing import Annotated
+
+from cyclopts import Parameter
+from cyclopts.validators import Number
+
+from fes_mj.cli.options import DesignName, MomentsOptions
 from fes_mj.linkage.design_file import load_design
 
 _DEFAULTS = MomentsOptions()
@@ -9,11 +13,11 @@ PORT, THIS_MACHINE = 8026, "127.0.0.1"
 
 
 def explore(
-    design: str = "d1",
+    design: DesignName = "d1",
     /,
     *,
     options: MomentsOptions = _DEFAULTS,
-    port: int = PORT,
+    port: Annotated[int, Parameter(validator=Number(gte=0, lte=65535))] = PORT,
     host: str = THIS_MACHINE,
     browser: bool = True,
 ) -> int:
@@ -21,8 +25,6 @@ def explore(
 
     Parameters
     ----------
-    design
-        trt, r1, r2, d1, d2, or a path to a design file.
     port
         Of the page on this machine; 0 takes any that is free.
     host
@@ -30,8 +32,6 @@ def explore(
     browser
         Open the page in the browser.
     """
-    if not 0 <= port <= 65535:
-        raise InputError(f"--port is {port}; it must be from 0 to 65535")
     loaded, moments = load_design(design), options.load_moments()
     from fes_mj.explore.answers import Answers
     from fes_mj.explore.server import serve

@@ -1,18 +1,15 @@
 """`fes_mj moments`: what is understood of a file of joint moments."""
 
-import sys
 from pathlib import Path
-from typing import Annotated
 
 import numpy as np
-from cyclopts import Parameter
 
-from fes_mj.cli.options import PrintOptions, require_picture, warn_of
-from fes_mj.cli.static import span, with_error
-from fes_mj.common.console import print_table, say
+from fes_mj.cli.options import Out, PrintOptions, warn_of
+from fes_mj.cli.tables import span, with_error
+from fes_mj.common.console import print_table
 from fes_mj.common.errors import require_extra
 from fes_mj.common.units import RPM
-from fes_mj.common.writing import json_text, require_writable, write_text
+from fes_mj.common.writing import PICTURES, require_writable, write_text
 from fes_mj.moments.files import Measurement, load_measurement, load_moments, measured_files, moments_csv
 from fes_mj.moments.joint_moments import GROUPS, JointMoments
 
@@ -25,7 +22,7 @@ def moments(
     *,
     options: PrintOptions = _DEFAULTS,
     plot: Path | None = None,
-    out: Annotated[Path | None, Parameter(name=["--out", "-o"])] = None,
+    out: Out | None = None,
 ) -> int:
     """Show what is understood of a file of joint moments, and warn of what looks misread.
 
@@ -40,11 +37,8 @@ def moments(
     """
     path = None if file in GROUPS else Path(file)
     inputs = measured_files(path) if path else []
-    for output, what, suffix in ((plot, "the plot", ""), (out, "the moments", ".csv")):
-        if output:
-            require_writable(output, what, suffix, inputs)
-    if plot:
-        require_picture(plot)
+    require_writable(plot, "the plot", PICTURES, inputs)
+    require_writable(out, "the moments", ".csv", inputs)
     measurement = load_measurement(path) if path else Measurement.of(load_moments(file))
     warn_of(measurement.moments)
     if plot:
@@ -54,27 +48,24 @@ def moments(
         write_plot(plot, measurement)
     if out:
         write_text(out, moments_csv(measurement.moments))
-    if options.json:
-        sys.stdout.write(json_text(measurement.summary()))
-    elif not options.quiet:
-        _print(measurement)
-        for output, what in ((plot, "plot"), (out, "moments")):
-            if output:
-                say(f"{what}: {output}")
+    options.show(measurement.summary, lambda: _print(measurement), plot=plot, moments=out)
     return 0
 
 
 def _print(measurement: Measurement) -> None:
-    found, own = measurement.summary(), measurement.moments
-    counted = f"{found['turns']} turn{'s' * (found['turns'] > 1)}, {found['samples']} samples"
+    content, own = measurement.summary(), measurement.moments
+    counted = f"{content['turns']} turn{'s' * (content['turns'] > 1)}, {content['samples']} samples"
     rows = [
-        ("knee moment, N m (extension positive)", span(found["knee_Nm"])),
-        ("hip moment, N m (extension positive)", span(found["hip_Nm"])),
+        ("knee moment, N m (extension positive)", span(content["knee_Nm"])),
+        ("hip moment, N m (extension positive)", span(content["hip_Nm"])),
         ("data", counted),
-        ("largest gap, deg of crank angle", f"{found['largest_gap_deg']:.1f}"),
-        ("mean power on the tricycle of the measurement, W", with_error(found["power_mean_W"], found["power_sd_W"])),
+        ("largest gap, deg of crank angle", f"{content['largest_gap_deg']:.1f}"),
+        (
+            "mean power on the tricycle of the measurement, W",
+            with_error(content["power_mean_W"], content["power_sd_W"]),
+        ),
         *((f"  of the {joint}, W", f"{power:.3f}") for joint, power in own.power_mean.items()),
-        ("work per turn there, J", f"{found['work_per_turn_J']:.3f}"),
+        ("work per turn there, J", f"{content['work_per_turn_J']:.3f}"),
     ]
     print_table(f"{own.name}, measured on {_tricycle(own)}", ("", "understood"), rows)
 

@@ -14,7 +14,7 @@ from fes_mj.cli.process import interruption_code
 from fes_mj.cli.search_options import SearchOptions, shell_word
 from fes_mj.common.console import errors, print_table, progress_bar, say
 from fes_mj.common.text import printable
-from fes_mj.common.writing import json_text, require_replaceable, require_writable, write_text
+from fes_mj.common.writing import json_text, require_replaceable, require_writable, write_files, write_text
 from fes_mj.linkage.design_file import design_toml, load_design
 
 if TYPE_CHECKING:
@@ -108,24 +108,21 @@ def optimize(
 def _check_files(out: Path | None, report: Path | None, options: SearchOptions) -> None:
     """Refuse files that could not or must not be written, before anything runs."""
     if out:
-        require_writable(out, "the design", ".toml", options.inputs)
-        for key, (path, mark) in _beside(out, options).items():
-            require_replaceable(path, f"the {key.partition('_')[0]}", mark, options.inputs)
+        require_writable(out, "the design", ".toml", options.inputs())
+        for key, path in _beside(out, options).items():
+            require_replaceable([path], f"the {key.partition('_')[0]}", options.inputs())
     if report:
         from fes_mj.viewing.pages import require_page_packages
 
-        require_writable(report, "the page", ".html", options.inputs)
+        require_writable(report, "the page", ".html", options.inputs())
         require_page_packages()
 
 
-def _beside(out: Path, options: SearchOptions) -> dict[str, tuple[Path, str]]:
-    """What appears beside the design file: key of JSON -> path, and what marks a file there as one of fes_mj's."""
-    from fes_mj.optimization.pareto import CSV_MARK
-    from fes_mj.simulation.export import MARKS
-
-    files = {"model_file": (out.with_suffix(".xml"), MARKS["model"])}
+def _beside(out: Path, options: SearchOptions) -> dict[str, Path]:
+    """What appears beside the design file: key of JSON -> path."""
+    files = {"model_file": out.with_suffix(".xml")}
     if options.method == "nsga-ii":
-        files["front_file"] = (out.with_name(f"{out.stem}-front.csv"), CSV_MARK)
+        files["front_file"] = out.with_name(f"{out.stem}-front.csv")
     return files
 
 
@@ -135,7 +132,7 @@ def _write(optimum: Optimum, origin: str, findings: Findings, options: SearchOpt
     from fes_mj.simulation.mjcf import build_mjcf
 
     design = optimum.design
-    paths = {"design_file": findings.out, **{key: path for key, (path, _) in _beside(findings.out, options).items()}}
+    paths = {"design_file": findings.out, **_beside(findings.out, options)}
     texts: dict[str, Callable[[], str]] = {
         "design_file": lambda: design_toml(design, origin),
         "model_file": lambda: mjcf_text(build_mjcf(design)),
@@ -143,7 +140,10 @@ def _write(optimum: Optimum, origin: str, findings: Findings, options: SearchOpt
     if optimum.front:
         texts["front_file"] = optimum.front.as_csv
     for key, text in texts.items():
-        findings.write(text(), paths[key])
+        if key == "design_file":
+            findings.write(text(), paths[key])
+        else:
+            write_files({paths[key]: text()}, unnamed=[paths[key]])
         if not options.silent:
             say(f"{key.replace('_', ' ')}: {paths[key]}")
     return {key: str(paths[key]) for key in texts}

@@ -1,13 +1,15 @@
 """Options that several commands share, and what they load."""
 
 import math
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Literal, NamedTuple
+from typing import Annotated, Any, Literal, NamedTuple, TypeAlias
 
-from cyclopts import Parameter
+from cyclopts import ArgumentCollection, Group, Parameter
+from cyclopts.validators import Number, mutually_exclusive
 
-from fes_mj.common.console import complain
+from fes_mj.common.console import complain, print_json, say
 from fes_mj.common.errors import InputError
 from fes_mj.common.units import RPM
 from fes_mj.linkage.design import Design
@@ -18,20 +20,32 @@ from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.torque_velocity import load_torque_velocity
 
 
-class Range(NamedTuple):
-    """What an option may be."""
-
-    low: float
-    high: float
-    what: str
-
-    def require(self, option: str, value: float) -> None:
-        """Raise InputError for a value that is not in it."""
-        if not self.low <= value <= self.high:
-            raise InputError(f"--{option} is {value:g}; it must be {self.what} from {self.low:g} to {self.high:g}")
+def bounds(variable: str) -> Number:
+    """A validator with the bounds that a design variable has in files."""
+    return Number(gte=VARIABLES[variable].low, lte=VARIABLES[variable].high)
 
 
-LAG = Range(0, 1, "a time in s")
+def needs(flag: str) -> Callable[[ArgumentCollection], None]:
+    """A validator of a group whose options mean nothing without one of them."""
+
+    def check(arguments: ArgumentCollection) -> None:
+        names = [argument.name for argument in arguments.filter_by(value_set=True)]
+        if names and flag not in names:
+            raise ValueError(f"{names[0]} needs {flag}.")
+
+    return check
+
+
+DesignName: TypeAlias = Annotated[str, Parameter(help="trt, r1, r2, d1, d2, or a path to a design file.")]
+Flag: TypeAlias = Annotated[bool, Parameter(negative="")]
+Out: TypeAlias = Annotated[Path, Parameter(name=["--out", "-o"])]
+Cadence: TypeAlias = Annotated[float, Parameter(validator=bounds("cadence_rpm"))]
+Legs: TypeAlias = Literal[1, 2]
+Lag: TypeAlias = Annotated[float, Parameter(validator=Number(gte=0, lte=1))]
+Seed: TypeAlias = Annotated[int, Parameter(validator=Number(gte=0))]
+Jobs: TypeAlias = Annotated[int, Parameter(validator=Number(gte=1))]
+PeopleOfEachSex: TypeAlias = Annotated[int, Parameter(validator=Number(gte=10, lte=100_000))]
+_WHOSE = Group("Joint moments", validator=mutually_exclusive)
 
 
 class Loaded(NamedTuple):
@@ -56,27 +70,25 @@ class MomentsOptions:
         dead centre), or a measurement file (.toml). With two legs given twice, the right leg's first.
     """
 
-    group: Literal["p1p2", "p1p3"] | None = None
+    group: Annotated[Literal["p1p2", "p1p3"] | None, Parameter(group=_WHOSE)] = None
     # a name may begin like a JSON list
-    moments: Annotated[list[Path] | None, Parameter(json_list=False, negative="")] = None
+    moments: Annotated[list[Path] | None, Parameter(group=_WHOSE, json_list=False, negative="")] = None
 
     def load_moments(self, legs: int = 1) -> JointMoments:
         """The joint moments that the options name; says what looks misread. Raises InputError for what is unusable."""
-        if self.group and self.moments:
-            raise InputError("--group and --moments exclude each other; a file of moments is a group of its own")
         files = [*map(str, self.moments or ()), *([] if self.moments else [self.group or "p1p2"])]
         if len(files) > legs:
             raise InputError(
                 f"--moments is given {len(files)} times; one file serves every leg, two are the right and the left "
-                "leg's: with simulate --legs 2"
+                "leg's: with --legs 2"
             )
         moments = load_moments(*files)
         warn_of(moments)
         return moments
 
-    def moment_files(self) -> list[Path]:
-        """The files that are read for them."""
-        return [file for path in self.moments or () for file in measured_files(path)]
+    def inputs(self, *designs: str) -> list[Path]:
+        """The files that a command with these options and designs reads, which none of its outputs may replace."""
+        return [*map(Path, designs), *(file for path in self.moments or () for file in measured_files(path))]
 
 
 @Parameter(name="*")
@@ -92,13 +104,27 @@ class PrintOptions:
         Print nothing but errors and warnings.
     """
 
-    json: Annotated[bool, Parameter(negative="")] = False
+    json: Flag = False
     quiet: Annotated[bool, Parameter(alias="-q", negative="")] = False
 
     @property
     def silent(self) -> bool:
         """Whether neither tables nor progress are shown."""
         return self.json or self.quiet
+
+    def show(self, content: Callable[[], Mapping[str, Any]], tables: Callable[[], None], **files: Path | None) -> None:
+        """Print the result as JSON, or as tables with the names of what was written."""
+        if self.json:
+            print_json(content())
+        elif not self.quiet:
+            tables()
+            self.name_files(**files)
+
+    def name_files(self, **files: Path | None) -> None:
+        """Say where what was written is, unless JSON or nothing is printed."""
+        for what, path in files.items():
+            if path and not self.silent:
+                say(f"{what.replace('_', ' ')}: {path}")
 
 
 @Parameter(name="*")
@@ -110,26 +136,25 @@ class LoadOptions(MomentsOptions):
     ----------
     cadence
         Crank speed in rpm; by default the one at which the tricycle does 5.71 km/h.
+    legs
+        One leg, or two half a turn apart on the same crank.
     dims
         Dimensions of one of the paper's designs: as identified, or as the paper prints them.
     torque_velocity
         Let joint moments change with joint speed, by Hill's relation; by default they do not, as in the paper.
     """
 
-    cadence: float | None = None
+    cadence: Cadence | None = None
+    legs: Legs = 1
     dims: Literal["identified", "printed"] = "identified"
     torque_velocity: Literal["hill"] | None = None
 
-    def load(self, design: str, legs: int = 1) -> Loaded:
+    def load(self, design: str) -> Loaded:
         """Load everything the options name. Raises InputError for what cannot be used."""
-        moments, loaded = self.load_moments(legs), load_design(design, self.dims)
+        moments, loaded = self.load_moments(self.legs), load_design(design, self.dims)
         if self.torque_velocity:
             moments = moments.at_speed(load_torque_velocity(self.torque_velocity))
         return Loaded(loaded, moments, crank_speed(self.cadence, loaded))
-
-    def inputs(self, *designs: str) -> list[Path]:
-        """The files that a command with these options and designs reads, which none of its outputs may replace."""
-        return [*map(Path, designs), *self.moment_files()]
 
 
 @Parameter(name="*")
@@ -148,24 +173,14 @@ class RunOptions(PrintOptions, LoadOptions):
 
 def warn_of(moments: JointMoments) -> None:
     """Say on standard error what looks misread in joint moments."""
-    for each in moments.misreadings:
-        complain(f"{moments.name}: {each.text}")
+    for misreading in moments.misreadings:
+        complain(f"{moments.name}: {misreading.text}")
     if moments.left:
         warn_of(moments.left)
 
 
-PICTURES = (".png", ".svg")
-
-
-def require_picture(plot: Path) -> None:
-    """Raise InputError unless the name says which kind of picture."""
-    if plot.suffix.lower() not in PICTURES:
-        raise InputError(f"{plot}: cannot write the plot: the name must end in {' or '.join(PICTURES)}")
-
-
 def require_lag(lag: float, design: Design, cadence: float) -> None:
-    """Raise InputError for a lag (s) that is none or takes a turn of the crank (rad/s) or more."""
-    LAG.require("lag", lag)
+    """Raise InputError for a lag (s) that takes a turn of the crank (rad/s) or more."""
     turn = 2 * math.pi / cadence
     if lag >= turn:
         raise InputError(
@@ -176,12 +191,9 @@ def require_lag(lag: float, design: Design, cadence: float) -> None:
 
 def crank_speed(cadence: float | None, design: Design) -> float:
     """Crank speed in rad/s of a --cadence in rpm, by default the design's own."""
-    allowed = VARIABLES["cadence_rpm"]
     if cadence is not None:
-        if not allowed.accepts(cadence):
-            raise InputError(f"--cadence is {cadence:g}; it must be {allowed.allowed}")
         return cadence * RPM
-    own = design.linkage.cadence / RPM
+    allowed, own = VARIABLES["cadence_rpm"], design.linkage.cadence / RPM
     if not allowed.accepts(own):
         raise InputError(
             f"{design.name}: linkage.gear_ratio is {design.linkage.gear_ratio:g}, which makes {own:.3g} rpm at the "

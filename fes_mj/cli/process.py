@@ -1,43 +1,46 @@
 """What a process owes those around it: streams may be closed, full or without a reader; signals let it tidy up."""
 
+from __future__ import annotations
+
 import io
 import os
 import signal
 import sys
-from types import FrameType
-from typing import NoReturn, TextIO
+from typing import TYPE_CHECKING, NoReturn, TextIO
 
 from fes_mj.common.errors import InputError
 
+if TYPE_CHECKING:
+    from types import FrameType
 
-class Stream(io.TextIOWrapper):
-    """A standard stream that can lose its reader: what is then said goes nowhere, and the run goes on.
+    from _typeshed import ReadableBuffer
 
-    needed: whether anything else that stops it, such as a full disk, is an InputError.
+
+class Outlet(io.FileIO):
+    """The bytes of a standard stream, which can lose its reader: the rest goes nowhere, and the run goes on.
+
+    needed: its name, if anything else that stops it, such as a full disk, is an InputError.
     """
 
-    def __init__(self, stream: TextIO, needed: str = "") -> None:
-        line_buffering, encoding = stream.isatty() or not needed, stream.encoding
-        super().__init__(stream.detach(), encoding, "backslashreplace", line_buffering=line_buffering)  # type: ignore[attr-defined]
+    def __init__(self, number: int, needed: str) -> None:
+        super().__init__(number, "w", closefd=False)
         self._needed = needed
 
-    def write(self, text: str) -> int:
+    def write(self, data: ReadableBuffer) -> int:
         try:
-            return super().write(text)
+            return super().write(data)
         except OSError as error:
-            self._give_up(error)
-            return len(text)
+            os.dup2(os.open(os.devnull, os.O_WRONLY), self.fileno())
+            if self._needed and not isinstance(error, BrokenPipeError):
+                raise InputError(f"{self._needed}: cannot be written: {error.strerror}") from None
+            return memoryview(data).nbytes
 
-    def flush(self) -> None:
-        try:
-            super().flush()
-        except OSError as error:
-            self._give_up(error)
 
-    def _give_up(self, error: OSError) -> None:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), self.fileno())
-        if self._needed and not isinstance(error, BrokenPipeError):
-            raise InputError(f"{self._needed}: cannot be written: {error.strerror}") from None
+def _stream(number: int, stream: TextIO | None, needed: str = "") -> TextIO:
+    """The stream of this number by way of an Outlet; what its encoding lacks is shown as an escape."""
+    buffer = io.BufferedWriter(Outlet(number, needed))
+    encoding = stream.encoding if stream else "utf-8"
+    return io.TextIOWrapper(buffer, encoding, "backslashreplace", line_buffering=not needed or os.isatty(number))
 
 
 def prepare() -> None:
@@ -47,8 +50,8 @@ def prepare() -> None:
             os.fstat(number)
         except OSError:  # closed; another file would get its number, and what is printed
             os.open(os.devnull, os.O_RDWR)
-    sys.stdout = Stream(sys.stdout or os.fdopen(1, "w", encoding="utf-8"), "standard output")
-    sys.stderr = Stream(sys.stderr or os.fdopen(2, "w", encoding="utf-8"))
+    if sys.platform != "win32":  # whose console takes text, not bytes
+        sys.stdout, sys.stderr = _stream(1, sys.stdout, "standard output"), _stream(2, sys.stderr)
     for name, default in (
         ("SIGINT", signal.default_int_handler),
         ("SIGTERM", signal.SIG_DFL),

@@ -5,6 +5,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
+from fes_mj.cli.options import Flag, Out
 from fes_mj.common.console import progress_bar, say
 from fes_mj.common.errors import require_extra
 from fes_mj.common.writing import make_folder
@@ -12,8 +13,8 @@ from fes_mj.common.writing import make_folder
 
 def reproduce(
     *,
-    out: Path = Path("results"),
-    svg: Annotated[bool, Parameter(negative="")] = False,
+    out: Out = Path("results"),
+    svg: Flag = False,
     quiet: Annotated[bool, Parameter(alias="-q", negative="")] = False,
 ) -> int:
     """Compute the paper's tables and figures and write them beside the project's own.

@@ -3,44 +3,31 @@
 from __future__ import annotations
 
 import math
-import sys
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
-from cyclopts import Parameter
+from cyclopts import Group, Parameter
+from cyclopts.validators import Number, mutually_exclusive
 
-from fes_mj.cli.options import LAG, MomentsOptions, PrintOptions, Range, require_lag
-from fes_mj.cli.simulate import check_rows, conclude_checks
-from fes_mj.cli.static import what_moves
+from fes_mj.cli.options import DesignName, Flag, Lag, MomentsOptions, Out, PrintOptions, require_lag
+from fes_mj.cli.tables import conclude_checks, or_dash, print_checks, what_moves
 from fes_mj.common.console import print_table, say
-from fes_mj.common.errors import InputError, require_extra
+from fes_mj.common.errors import require_extra
 from fes_mj.common.units import KMH, RPM
-from fes_mj.common.writing import json_text, require_folder, require_replaceable, require_writable, write_files
+from fes_mj.common.writing import json_text, require_results, require_writable, write_results
 from fes_mj.linkage.design import TRICYCLE_SPEED
 from fes_mj.linkage.design_file import load_design
 from fes_mj.moments.torque_velocity import load_torque_velocity
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from fes_mj.crosscheck.ride_case import RideCase
     from fes_mj.riding.ride import Ride
     from fes_mj.riding.starts import Starts
     from fes_mj.riding.trace import Trace
 
-
-_RANGES = {
-    "slope": Range(-30, 30, "a slope in percent that a tricycle may climb or descend,"),
-    "launch": Range(0.1, 60, "a speed in km/h"),
-    "from-rest": Range(0, 360, "a crank angle in degrees"),
-    "duration": Range(1, 300, "a time in s"),
-    "lag": LAG,
-    "tricycle-mass": Range(1, 500, "a mass in kg"),
-    "rolling-mass": Range(0, 50, "a mass in kg"),
-    "crr": Range(0, 0.5, "a force per weight"),
-    "drag-area": Range(0, 10, "an area in m2"),
-}
+_BEGIN = Group("How the ride begins", validator=mutually_exclusive)
+_TRICYCLE = Group("Tricycle and road")
 
 
 @Parameter(name="*")
@@ -78,29 +65,21 @@ class RideOptions(PrintOptions, MomentsOptions):
         Dimensions of one of the paper's designs: as identified, or as the paper prints them.
     """
 
-    transmission: Literal["freewheel", "fixed"] = "freewheel"
-    slope: float = 0.0
-    launch: float | None = None
-    from_rest: float | None = None
-    duration: float = 60.0
+    transmission: Annotated[Literal["freewheel", "fixed"], Parameter(group=_TRICYCLE)] = "freewheel"
+    slope: Annotated[float, Parameter(group=_TRICYCLE, validator=Number(gte=-30, lte=30))] = 0.0
+    launch: Annotated[float | None, Parameter(group=_BEGIN, validator=Number(gte=0.1, lte=60))] = None
+    from_rest: Annotated[float | None, Parameter(group=_BEGIN, validator=Number(gte=0, lte=360))] = None
+    duration: Annotated[float, Parameter(validator=Number(gte=1, lte=300))] = 60.0
     torque_velocity: Literal["hill", "none"] = "hill"
-    lag: float = 0.0
-    tricycle_mass: float = 20.0
-    rolling_mass: float = 3.0
-    crr: float = 0.008
-    drag_area: float = 0.4
+    lag: Lag = 0.0
+    tricycle_mass: Annotated[float, Parameter(group=_TRICYCLE, validator=Number(gte=1, lte=500))] = 20.0
+    rolling_mass: Annotated[float, Parameter(group=_TRICYCLE, validator=Number(gte=0, lte=50))] = 3.0
+    crr: Annotated[float, Parameter(group=_TRICYCLE, validator=Number(gte=0, lte=0.5))] = 0.008
+    drag_area: Annotated[float, Parameter(group=_TRICYCLE, validator=Number(gte=0, lte=10))] = 0.4
     dims: Literal["identified", "printed"] = "identified"
 
     def load(self, name: str) -> Ride:
         """Load everything the options name. Raises InputError for what cannot be used."""
-        for option, allowed in _RANGES.items():
-            value = getattr(self, option.replace("-", "_"))
-            if option == "launch" and value == 0:
-                raise InputError("--launch is 0; for a start from rest give its crank angle: --from-rest DEG")
-            if value is not None:
-                allowed.require(option, value)
-        if self.launch is not None and self.from_rest is not None:
-            raise InputError("--launch and --from-rest exclude each other; a start from rest has no speed")
         design, moments = load_design(name, self.dims), self.load_moments(2)
         require_lag(self.lag, design, design.linkage.cadence)
         if self.torque_velocity == "hill":
@@ -126,52 +105,63 @@ _DEFAULTS = RideOptions()
 
 
 def ride(
-    design: str,
+    design: DesignName,
     /,
     *,
     options: RideOptions = _DEFAULTS,
-    starts: Annotated[bool, Parameter(negative="")] = False,
-    out: Path | None = None,
+    starts: Flag = False,
+    out: Out | None = None,
     render: Path | None = None,
 ) -> int:
     """Ride a design on a road, in MuJoCo and by the reduced equation of motion; exit code 1 if the two disagree.
 
     Parameters
     ----------
-    design
-        trt, r1, r2, d1, d2, or a path to a design file.
     starts
         Also find from which crank angles it starts from rest, the launch it needs and the slope it climbs.
     out
-        Existing folder for the result (JSON), the ride (CSV), the model (MJCF) and, with --starts, a picture (SVG).
+        Folder for the result (JSON), the ride (CSV), the model (MJCF) and, with --starts, a picture (SVG); it is made
+        if its parent exists.
     render
         Write a video (.mp4) of the ride beside speed and crank power.
     """
-    loaded = options.load(design)
-    inputs = [Path(design), *options.moment_files()]
-    if render:
-        require_writable(render, "the video", ".mp4", inputs)
-    paths = _results(loaded, out, starts, inputs) if out else {}
+    loaded, inputs = options.load(design), options.inputs(design)
+    require_writable(render, "the video", ".mp4", inputs)
+    if out and starts:
+        require_extra("video", "matplotlib")
+    suffixes = ("json", "csv", "xml", *(["svg"] if starts else []))
+    stem = f"{loaded.design.name}-{loaded.moments.name}-ride"
+    paths = require_results(out, stem, suffixes, inputs) if out else {}
     from fes_mj.crosscheck.ride_case import RideCase
 
-    case, found = RideCase(loaded), None
+    case, result = RideCase(loaded), None
     if starts:
         from fes_mj.riding.starts import starts as find_starts
 
-        found = find_starts(loaded)
+        result = find_starts(loaded)
+    content = case.summary() | (result.summary() if result else {})
     if paths:
-        _write(case, found, paths)
-    if options.json:
-        sys.stdout.write(json_text(case.summary() | (found.summary() if found else {})))
-    elif not options.quiet:
-        _print(case, found)
+        write_results(dict(zip(paths.values(), _texts(case, result, json_text(content)), strict=True)))
+    options.show(lambda: content, lambda: _print(case, result))
     if render:
         from fes_mj.viewing.render import render_video
 
         render_video(case, render, quiet=options.quiet)
-        if not options.silent:
-            say(f"video: {render}")
+        options.name_files(video=render)
     return 0 if case.agrees else 1
+
+
+def _texts(case: RideCase, starts: Starts | None, result: str) -> list[str]:
+    """What is written: the result, the ride, the model, the ring of starts."""
+    from fes_mj.simulation.export import mjcf_text
+    from fes_mj.simulation.road_mjcf import build_road_mjcf
+
+    texts = [result, case.trace_csv(), mjcf_text(build_road_mjcf(case.ride, case.timestep))]
+    if starts:
+        from fes_mj.viewing.rings import starts_svg
+
+        texts.append(starts_svg(starts))
+    return texts
 
 
 def _print(case: RideCase, starts: Starts | None) -> None:
@@ -179,16 +169,16 @@ def _print(case: RideCase, starts: Starts | None) -> None:
     road = f"{ride.transmission}{' gear' if ride.fixed else ''}, {100 * ride.road.slope:g} % slope"
     both = [(name, mine, other) for (name, mine), (_, other) in zip(_rows(run), _rows(case.reference), strict=True)]
     print_table(f"{what_moves(ride.design, ride.moments)}; {road}", ("", "MuJoCo", "reduced model"), both)
-    print_table("Checks", ("check", "value", "limit", "verdict"), check_rows(case.checks))
+    print_checks("Checks", case.checks)
     if starts:
         rows = [
             ("starts from rest at, % of crank angles", f"{100 * starts.share:.0f}"),
-            ("launch needed from everywhere, km/h", _text(starts.launch and starts.launch / KMH, ".2f")),
-            ("steepest slope, %", _text(starts.slope and 100 * starts.slope, ".2f")),
+            ("launch needed from everywhere, km/h", or_dash(starts.launch and starts.launch / KMH, ".2f")),
+            ("steepest slope, %", or_dash(starts.slope and 100 * starts.slope, ".2f")),
         ]
         print_table("Starts, by the reduced model", ("", ""), rows)
     if run.rides:
-        say(f"It rides: {_text(run.mean_speed and run.mean_speed / KMH, '.2f')} km/h at the end.", "bold")
+        say(f"It rides: {or_dash(run.mean_speed and run.mean_speed / KMH, '.2f')} km/h at the end.", "bold")
     else:
         say(f"It stops after {run.stopped_at:.1f} s and {run.distance.max():.1f} m.", "bold")
     conclude_checks("The two solvers", case.checks)
@@ -198,49 +188,12 @@ def _rows(trace: Trace) -> list[tuple[str, str]]:
     """Quantity and value of one solver, as text."""
     speed, cadence, ripple = trace.mean_speed, trace.cadence, trace.ripple
     return [
-        ("speed over the last turns, km/h", _text(speed and speed / KMH, ".3f")),
-        ("cadence, rpm", _text(cadence and cadence / RPM, ".1f")),
-        ("speed ripple, %", _text(ripple and 100 * ripple, ".2f")),
+        ("speed over the last turns, km/h", or_dash(speed and speed / KMH, ".3f")),
+        ("cadence, rpm", or_dash(cadence and cadence / RPM, ".1f")),
+        ("speed ripple, %", or_dash(ripple and 100 * ripple, ".2f")),
         ("freewheeling, % of the time", f"{100 * trace.coasting_share:.1f}"),
         ("distance, m", f"{trace.distance.max():.2f}"),
-        ("stopped after, s", _text(trace.stopped_at, ".2f")),
-        ("muscle power, W", _text(trace.muscle_power, ".2f")),
-        ("road power, W", _text(trace.road_power, ".2f")),
+        ("stopped after, s", or_dash(trace.stopped_at, ".2f")),
+        ("muscle power, W", or_dash(trace.muscle_power, ".2f")),
+        ("road power, W", or_dash(trace.road_power, ".2f")),
     ]
-
-
-def _text(value: float | None, spec: str) -> str:
-    return "-" if value is None else format(value, spec)
-
-
-def _results(ride: Ride, folder: Path, starts: bool, inputs: Sequence[Path]) -> dict[str, Path]:
-    """Where the results go. Raises InputError, before anything runs, if files of others are there."""
-    from fes_mj.simulation.export import MARKS
-
-    require_folder(folder, "the results")
-    marks = {"json": '"transmission": ', "csv": ",reduced_speed_m_s,", "xml": MARKS["model"]}
-    if starts:
-        require_extra("video", "matplotlib")
-        from fes_mj.viewing.rings import MARK
-
-        marks["svg"] = MARK
-    paths = {suffix: folder / f"{ride.design.name}-{ride.moments.name}-ride.{suffix}" for suffix in marks}
-    for suffix, path in paths.items():
-        require_replaceable(path, "the results", marks[suffix], inputs)
-    return paths
-
-
-def _write(case: RideCase, starts: Starts | None, paths: dict[str, Path]) -> None:
-    from fes_mj.simulation.export import mjcf_text
-    from fes_mj.simulation.road_mjcf import build_road_mjcf
-
-    texts = {
-        "json": json_text(case.summary() | (starts.summary() if starts else {})),
-        "csv": case.trace_csv(),
-        "xml": mjcf_text(build_road_mjcf(case.ride, case.timestep)),
-    }
-    if starts:
-        from fes_mj.viewing.rings import starts_svg
-
-        texts["svg"] = starts_svg(starts)
-    write_files({path: texts[suffix] for suffix, path in paths.items()})

@@ -9,13 +9,15 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from cyclopts import Parameter
+from cyclopts.validators import Number
 
-from fes_mj.cli.fit_options import sample_size
-from fes_mj.cli.options import MomentsOptions, PrintOptions
+from fes_mj.cli.options import Jobs, MomentsOptions, PeopleOfEachSex, PrintOptions, Seed
 from fes_mj.common.errors import InputError, require_extra
 from fes_mj.common.provenance import provenance
+from fes_mj.linkage.riders import SAMPLES
 
 Methods = Literal["differential-evolution", "cma-es", "nsga-ii", "random-pursuit"]
+_Speed = Annotated[float, Parameter(validator=Number(gt=0))]
 _PACKAGES = {"cma-es": "cma", "nsga-ii": "pymoo"}
 _WITHOUT_EFFECT = ("json", "quiet", "jobs", "cluster")  # on what is found
 
@@ -65,35 +67,25 @@ class SearchOptions(PrintOptions, MomentsOptions):
     """
 
     method: Methods = "differential-evolution"
-    budget: int | None = None
-    searches: int = 4
-    seed: int = 0
+    budget: Annotated[int | None, Parameter(validator=Number(gte=1000))] = None
+    searches: Annotated[int, Parameter(validator=Number(gte=1))] = 4
+    seed: Seed = 0
     start: str | None = None
     speeds_of: str = "trt"
-    knee_speed_limit: float | None = None
-    hip_speed_limit: float | None = None
-    ripple_limit: float | None = None
-    caution: float = 0.0
+    knee_speed_limit: _Speed | None = None
+    hip_speed_limit: _Speed | None = None
+    ripple_limit: Annotated[float | None, Parameter(validator=Number(gt=0, lte=200))] = None
+    caution: Annotated[float, Parameter(validator=Number(gte=0, lte=10))] = 0.0
     riders: Literal["one", "population", "population-p10"] = "one"
-    samples: int | None = None
-    sample_seed: int | None = None
+    samples: PeopleOfEachSex | None = None
+    sample_seed: Seed | None = None
     smooth: Annotated[bool, Parameter(negative="")] = False
     problem: Path | None = None
-    jobs: int = 1
+    jobs: Jobs = 1
     cluster: str | None = None
 
     def check(self) -> None:
         """Refuse unusable options before anything runs."""
-        if self.budget is not None and self.budget < 1000:
-            raise InputError(f"--budget is {self.budget}; it must be at least 1000 evaluations (a second makes 50,000)")
-        if self.searches < 1:
-            raise InputError(f"--searches is {self.searches}; it must be at least 1")
-        if self.seed < 0:
-            raise InputError(f"--seed is {self.seed}; it must not be negative")
-        if self.ripple_limit is not None and not 0 < self.ripple_limit <= 200:
-            raise InputError(f"--ripple-limit is {self.ripple_limit:g}; it must be above 0 and at most 200 %")
-        if not 0 <= self.caution <= 10:
-            raise InputError(f"--caution is {self.caution:g}; it must be from 0 to 10 standard deviations")
         if self.caution and (self.moments or self.method == "nsga-ii"):
             raise InputError(
                 "--caution needs the error bars of one group's recovered moments: not with --moments or nsga-ii"
@@ -110,9 +102,6 @@ class SearchOptions(PrintOptions, MomentsOptions):
                 if value is not None:
                     raise InputError(f"{name} is of a population; it needs --riders population")
             return
-        sample_size(self.samples)
-        if self.sample_seed is not None and self.sample_seed < 0:
-            raise InputError(f"--sample-seed is {self.sample_seed}; it must not be negative")
         if self.caution or self.method == "nsga-ii":
             raise InputError(f"--riders {self.riders} is an objective of its own: not with --caution or nsga-ii")
 
@@ -121,7 +110,7 @@ class SearchOptions(PrintOptions, MomentsOptions):
         from fes_mj.optimization.limits import DEFAULT
         from fes_mj.optimization.people import ONE_RIDER, sampled
 
-        size, seed = sample_size(self.samples), self.sample_seed or 0
+        size, seed = self.samples or SAMPLES, self.sample_seed or 0
         return {
             "compared_with": self.speeds_of,
             "start": self.start,
@@ -133,11 +122,10 @@ class SearchOptions(PrintOptions, MomentsOptions):
             "people": ONE_RIDER if self.riders == "one" else sampled(self.riders, size, seed),
         }
 
-    @property
-    def inputs(self) -> list[Path]:
+    def inputs(self, *designs: str) -> list[Path]:
         """The files that the options name, which no output may replace."""
         named = (self.start, self.speeds_of, self.problem)
-        return [*(Path(name) for name in named if name), *self.moment_files()]
+        return [*(Path(name) for name in named if name), *super().inputs(*designs)]
 
     def command(self, kind: str) -> str:
         """The command line, for a shell, that finds the same again with this version: what is not by default."""

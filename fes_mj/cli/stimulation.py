@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import math
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Parameter
 
-from fes_mj.cli.options import PrintOptions, crank_speed, require_lag, require_picture
+from fes_mj.cli.options import Cadence, DesignName, Lag, Legs, PrintOptions, bounds, crank_speed, require_lag
 from fes_mj.common.console import print_table, say
 from fes_mj.common.errors import require_extra
-from fes_mj.common.writing import json_text, require_writable, write_files
+from fes_mj.common.writing import PICTURES, require_writable, write_text
 from fes_mj.linkage.design_file import load_design
 
 if TYPE_CHECKING:
@@ -23,11 +22,12 @@ _DEFAULTS = PrintOptions()
 
 
 def stimulation(
-    design: str,
+    design: DesignName,
     /,
     *,
-    cadence: Annotated[list[float] | None, Parameter(negative="")] = None,
-    lag: float = 0.0,
+    cadence: Annotated[list[Cadence] | None, Parameter(negative="", validator=bounds("cadence_rpm"))] = None,
+    legs: Legs = 2,
+    lag: Lag = 0.0,
     dims: Literal["identified", "printed"] = "identified",
     csv: Path | None = None,
     plot: Path | None = None,
@@ -37,46 +37,38 @@ def stimulation(
 
     Parameters
     ----------
-    design
-        trt, r1, r2, d1, d2, or a path to a design file.
     cadence
         Crank speed in rpm, also several times; by default the one at which the tricycle does 5.71 km/h.
+    legs
+        Windows of the right leg alone, or in JSON and CSV of both.
     lag
         Of the muscles behind the stimulation, in s; the windows are advanced by what the crank turns in it. Cycles in
         use: 0.06 to 0.15.
     dims
         Dimensions of one of the paper's designs: as identified, or as the paper prints them.
     csv
-        Write the windows of both legs as a table (.csv).
+        Write the windows as a table (.csv).
     plot
         Draw those of the right leg as rings (.png or .svg).
     """
     loaded, inputs = load_design(design, dims), [Path(design)]
-    cadences = [crank_speed(each, loaded) for each in cadence or (None,)]
-    for each in cadences:
-        require_lag(lag, loaded, each)
-    if csv:
-        require_writable(csv, "the windows", ".csv", inputs)
+    cadences = [crank_speed(rpm, loaded) for rpm in cadence or (None,)]
+    for speed in cadences:
+        require_lag(lag, loaded, speed)
+    require_writable(csv, "the windows", ".csv", inputs)
+    require_writable(plot, "the plot", PICTURES, inputs)
     if plot:
-        require_writable(plot, "the plot", "", [*inputs, *([csv] if csv else [])])
-        require_picture(plot)
         require_extra("report", "matplotlib")
     from fes_mj.riding.stimulation import stimulation as find_windows, summary, table_csv
 
-    windows = find_windows(loaded, cadences, lag)
+    windows = [window for window in find_windows(loaded, cadences, lag) if window.leg == "right" or legs == 2]
     if plot:
         from fes_mj.viewing.rings import write_windows
 
         write_windows(plot, loaded, windows)
     if csv:
-        write_files({csv: table_csv(loaded, windows)})
-    if options.json:
-        sys.stdout.write(json_text(summary(loaded, windows)))
-    elif not options.quiet:
-        _print(loaded, windows)
-        for output, what in ((csv, "windows"), (plot, "plot")):
-            if output:
-                say(f"{what}: {output}")
+        write_text(csv, table_csv(loaded, windows))
+    options.show(lambda: summary(loaded, windows), lambda: _print(loaded, windows), windows=csv, plot=plot)
     return 0
 
 
@@ -86,18 +78,18 @@ def _print(design: Design, windows: list[Window]) -> None:
     rows = []
     for window in windows:
         if window.leg == "right":
-            found = window.record(design)
+            record = window.record(design)
             rows.append(
                 (
-                    f"{window.muscle} ({found['moment']})",
-                    f"{found['cadence_rpm']:.1f} ({found['cadence_Hz']:.2f} Hz)",
-                    f"{_span(found['works_deg'])} ({found['width_deg']:.0f})",
-                    _span(found["stimulate_deg"]),
-                    _span(found["stimulate_from_tdc_deg"]),
-                    f"{_span(found['stimulate_core_deg'])} ({found['core_width_deg']:.0f})",
+                    f"{window.muscle} ({record['moment']})",
+                    f"{record['cadence_rpm']:.1f} ({record['cadence_Hz']:.2f} Hz)",
+                    f"{_span(record['works_deg'])} ({record['width_deg']:.0f})",
+                    _span(record["stimulate_deg"]),
+                    _span(record["stimulate_from_tdc_deg"]),
+                    f"{_span(record['stimulate_core_deg'])} ({record['core_width_deg']:.0f})",
                 )
             )
-    lead = ", ".join(f"{degrees:.1f}" for degrees in dict.fromkeys(math.degrees(each.lead) for each in windows))
+    lead = ", ".join(f"{degrees:.1f}" for degrees in dict.fromkeys(math.degrees(window.lead) for window in windows))
     title = f"{design.name}, right leg; crank angles in deg, lag {windows[0].lag:g} s = {lead} deg of crank"
     columns = ("muscle", "cadence, rpm", "works (width)", "stimulate", "from top dead centre", "core of it (width)")
     print_table(title, columns, rows)

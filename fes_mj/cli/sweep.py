@@ -1,19 +1,16 @@
 """`fes_mj sweep`: many designs, riders, cadences and moments; killed and started again, it goes on where it was."""
 
 import os
-import sys
 import time
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
 
-from cyclopts import Parameter
-
-from fes_mj.cli.options import PrintOptions, warn_of
+from fes_mj.cli.options import Jobs, Out, PrintOptions, warn_of
 from fes_mj.common.console import print_table, progress_bar
 from fes_mj.common.errors import InputError, require_extra
-from fes_mj.common.writing import json_text, make_folder, require_writable
+from fes_mj.common.writing import make_folder, require_writable
 
 if TYPE_CHECKING:
     from fes_mj.common.parallel import Workers
@@ -28,8 +25,8 @@ def sweep(
     study: Path,
     /,
     *,
-    out: Annotated[Path, Parameter(name=["--out", "-o"])],
-    jobs: int | None = None,
+    out: Out,
+    jobs: Jobs | None = None,
     cluster: str | None = None,
     csv: Path | None = None,
     plot: Path | None = None,
@@ -60,14 +57,13 @@ def sweep(
     if cluster is not None:
         _require_address(cluster)
     sweep = Sweep(load_study(study), out)
-    for each in sweep.study.moments.values():
-        warn_of(each)
+    for moments in sweep.study.moments.values():
+        warn_of(moments)
     if plot:
         _require_plottable(sweep.study, study)
     make_folder(out, "the results")
-    for path, what, suffix in ((csv, "the rows", ".csv"), (plot, "the plot", ".png")):
-        if path:
-            require_writable(path, what, suffix, sweep.study.files)
+    require_writable(csv, "the rows", ".csv", sweep.study.files)
+    require_writable(plot, "the plot", ".png", sweep.study.files)
     summary = _run(sweep, workers, study.stem, options.silent)
     if csv:
         sweep.write_csv(csv)
@@ -75,10 +71,7 @@ def sweep(
         from fes_mj.sweep.plot import write_plot
 
         write_plot(sweep, plot)
-    if options.json:
-        sys.stdout.write(json_text(summary))
-    elif not options.quiet:
-        _print(summary, study.stem, sweep.study)
+    options.show(lambda: summary, lambda: _print(summary, study.stem, sweep.study), rows=csv, plot=plot)
     return 0
 
 

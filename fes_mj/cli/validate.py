@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-from cyclopts import Parameter
+from cyclopts import Group, Parameter
 
-from fes_mj.cli.options import RunOptions
-from fes_mj.cli.simulate import check_rows
-from fes_mj.cli.static import print_notes
-from fes_mj.common.checks import Check, definitions
-from fes_mj.common.console import conclude, print_table, say, track
+from fes_mj.cli.options import DesignName, Flag, RunOptions, needs
+from fes_mj.cli.tables import print_checks, print_notes
+from fes_mj.common.checks import Check, definitions, find
+from fes_mj.common.console import conclude, number, print_table, say, track
 from fes_mj.common.errors import InputError
 from fes_mj.common.provenance import provenance
-from fes_mj.common.writing import json_text, require_writable, write_text
+from fes_mj.common.writing import require_writable, write_text
 from fes_mj.linkage.design_file import DESIGNS
 from fes_mj.statics.extrapolation import turning_in_range
 
@@ -26,43 +24,49 @@ if TYPE_CHECKING:
     from fes_mj.verification.faults import Detection
 
 _DEFAULTS = RunOptions()
+_REPORT = Group("Report", validator=needs("--report"))
 # Where no design is named, faults are injected into this one: all bodies, loops and parameters exist in it.
 FAULTY_DESIGN = "d1"
 
 
 def validate(
-    *designs: str,
+    *designs: DesignName,
     options: RunOptions = _DEFAULTS,
-    quick: Annotated[bool, Parameter(negative="")] = False,
-    faults: Annotated[bool, Parameter(negative="")] = False,
-    report: Path | None = None,
+    quick: Flag = False,
+    faults: Flag = False,
+    report: Annotated[Path | None, Parameter(group=_REPORT)] = None,
+    video: Annotated[Path | None, Parameter(group=_REPORT)] = None,
     junit: Path | None = None,
-    video: Path | None = None,
+    explain: str | None = None,
 ) -> int:
-    """Run every check of the harness on designs, one verdict each; exit code 1 if one fails.
+    """Run every check of the harness on designs, the paper's five if none is named; exit code 1 if one fails.
 
     Parameters
     ----------
-    designs
-        trt, r1, r2, d1, d2, or paths to design files; the paper's five if none is named.
+    legs
+        With --quick 2 also checks two legs on one crank, as a full run always does.
     quick
         Seconds instead of minutes: one rider group, one leg, no refinement.
     faults
         Also inject faults into the first design named (default d1) and tell which check catches each.
     report
         Write a self-contained report (.html).
-    junit
-        Write the verdicts as JUnit XML (.xml), for continuous integration.
     video
         A video of `fes_mj simulate --render` to put into the report (.mp4).
+    junit
+        Write the verdicts as JUnit XML (.xml), for continuous integration.
+    explain
+        Instead: what this check guards against and what usually breaks it, for example mean_power; `all` lists them.
     """
+    if explain is not None:
+        return _explain(explain)
     cases = list(_cases(designs or DESIGNS, options, quick))
     _check_files(report, junit, video, options.inputs(*designs))
-    checks = _run_checks(cases, quick, options.silent)
+    checks = _run_checks(cases, quick, options)
     detections = _inject(designs[0] if designs else FAULTY_DESIGN, options) if faults else ()
-    broken = {each.subject for each in checks if each.name == "stability" and not each.ok}
+    broken = {check.subject for check in checks if check.name == "stability" and not check.ok}
     measured = [case for case in cases if case.name not in broken]
-    ok = all(each.ok for each in checks) and all(each.caught for each in detections)
+    ok = all(check.ok for check in checks) and all(detection.caught for detection in detections)
     if junit:
         from fes_mj.verification.junit import junit_xml
 
@@ -71,11 +75,25 @@ def validate(
         from fes_mj.verification.report import report_html
 
         write_text(report, report_html(checks, detections, measured, video))
-    if options.json:
-        sys.stdout.write(json_text(_summary(ok, checks, detections, measured)))
-    elif not options.quiet:
-        _print(ok, checks, detections, measured, options.verbose)
+    options.show(
+        lambda: _summary(ok, checks, detections, measured),
+        lambda: _print(ok, checks, detections, measured, options.verbose),
+    )
     return 0 if ok else 1
+
+
+def _explain(name: str) -> int:
+    if name == "all":
+        rows = [(check.name, check.kind, number(check.limit, check.unit)) for check in definitions().values()]
+        print_table("Checks", ("check", "kind", "limit"), rows)
+        return 0
+    check = find(name)
+    say(f"{check.name}: {check.quantity}", "bold")
+    say(f"  kind: {check.kind}")
+    say(f"  limit: {number(check.limit, check.unit)}: {check.reason}")
+    say(f"  guards against: {check.guards}")
+    say(f"  usually broken by: {check.breaks}")
+    return 0
 
 
 def _cases(designs: Sequence[str], options: RunOptions, quick: bool) -> Iterator[VerificationCase]:
@@ -96,25 +114,22 @@ def _cases(designs: Sequence[str], options: RunOptions, quick: bool) -> Iterator
 def _check_files(report: Path | None, junit: Path | None, video: Path | None, inputs: list[Path]) -> None:
     """Refuse unusable files, and a missing package, before anything runs."""
     inputs = [*inputs, video] if video else inputs
+    require_writable(report, "the report", ".html", inputs)
+    require_writable(junit, "the JUnit file", ".xml", inputs)
     if report:
-        require_writable(report, "the report", ".html", inputs)
         from fes_mj.viewing.pages import require_page_packages
 
         require_page_packages()
-    if junit:
-        require_writable(junit, "the JUnit file", ".xml", inputs)
-    if video and not report:
-        raise InputError("--video puts a video into the report; name it with --report OUT.html")
     if video and not (video.is_file() and video.suffix.lower() == ".mp4"):
         raise InputError(f"{video}: cannot read the video; it must be an .mp4 file, as `simulate --render` writes it")
 
 
-def _run_checks(cases: list[VerificationCase], quick: bool, quiet: bool) -> list[Check]:
-    from fes_mj.verification.suite import FULL, QUICK, benchmarks, verify
+def _run_checks(cases: list[VerificationCase], quick: bool, options: RunOptions) -> list[Check]:
+    from fes_mj.verification.suite import FULL, QUICK, benchmarks, two_leg_checks, verify
 
-    stages = QUICK if quick else FULL
+    stages = FULL if not quick else (*QUICK, two_leg_checks) if options.legs == 2 else QUICK
     runs = [verify(case, (stage,)) for case in cases for stage in stages] + [benchmarks()]
-    return [each for run in track(runs, "checking", quiet) for each in run]
+    return [check for run in track(runs, "checking", options.silent) for check in run]
 
 
 def _inject(design: str, options: RunOptions) -> tuple[Detection, ...]:
@@ -132,20 +147,19 @@ def _summary(
 ) -> dict[str, Any]:
     content: dict[str, Any] = {
         "ok": ok,
-        "checks": [each.as_json() | {"kind": definitions()[each.name].kind} for each in checks],
-        "runs": [each.as_json() for each in cases],
+        "checks": [check.as_json() | {"kind": definitions()[check.name].kind} for check in checks],
+        "runs": [case.as_json() for case in cases],
     }
     if detections:
-        content["faults"] = [each.as_json() for each in detections]
+        content["faults"] = [detection.as_json() for detection in detections]
     return content | {"provenance": provenance()}
 
 
 def _print(
     ok: bool, checks: list[Check], detections: Sequence[Detection], cases: list[VerificationCase], verbose: bool
 ) -> None:
-    for subject in dict.fromkeys(each.subject for each in checks):
-        own = [each for each in checks if each.subject == subject]
-        print_table(subject, ("check", "value", "limit", "verdict"), check_rows(own))
+    for subject in dict.fromkeys(check.subject for check in checks):
+        print_checks(subject, [check for check in checks if check.subject == subject])
     if verbose:
         for case in cases:
             _print_details(case)
@@ -154,14 +168,14 @@ def _print(
         print_notes(case.static, f"{case.name}: ")
     if detections:
         _print_faults(detections)
-    failed = [f"{each.name} ({each.subject})" for each in checks if not each.ok]
-    missed = [each.fault.name for each in detections if not each.caught]
+    failed = [f"{check.name} ({check.subject})" for check in checks if not check.ok]
+    missed = [detection.fault.name for detection in detections if not detection.caught]
     if ok:
         also = f", all {len(detections)} faults are caught" if detections else ""
         conclude(True, f"All {len(checks)} checks hold", f"{also}.")
     if failed:
         conclude(False, f"{len(failed)} of {len(checks)} checks failed", f": {', '.join(failed)}")
-        say("`fes_mj explain CHECK` says what usually breaks one.")
+        say("`fes_mj validate --explain CHECK` says what usually breaks one.")
     if missed:
         conclude(False, f"{len(missed)} faults went unnoticed", f": {', '.join(missed)}")
 
@@ -205,9 +219,9 @@ def _print_details(case: VerificationCase) -> None:
 
 def _print_faults(detections: Sequence[Detection]) -> None:
     rows = [
-        (each.fault.name, each.first.name, f"{each.first.factor:.2g}", str(len(each.failed)))
-        if each.first
-        else (each.fault.name, "nobody", "", "0")
-        for each in detections
+        (detection.fault.name, detection.first.name, f"{detection.first.factor:.2g}", str(len(detection.failed)))
+        if detection.first
+        else (detection.fault.name, "nobody", "", "0")
+        for detection in detections
     ]
     print_table("Injected faults", ("fault", "first caught by", "times its limit", "checks that caught it"), rows)

@@ -1,13 +1,15 @@
 """What people see on a terminal: aligned tables, and progress on standard error."""
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+import sys
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from rich.console import Console
 from rich.text import Text
 
 from fes_mj.common.text import printable
+from fes_mj.common.writing import json_text
 
 Item = TypeVar("Item")
 GOOD, BAD = "bold green", "bold red"
@@ -19,6 +21,11 @@ errors = Console(markup=False, emoji=False, highlight=False, stderr=True)
 def say(text: str, style: str | None = None) -> None:
     """Print a line as it is, however long."""
     output.print(printable(text), style=style, soft_wrap=True)
+
+
+def print_json(content: Mapping[str, Any]) -> None:
+    """Print an object as JSON, as files have it."""
+    sys.stdout.write(json_text(content))
 
 
 def complain(text: str) -> None:

@@ -3,15 +3,21 @@
 import json
 import math
 import os
-from collections.abc import Iterable, Iterator, Mapping
-from contextlib import ExitStack, contextmanager
+import sys
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from contextlib import ExitStack, contextmanager, suppress
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
 from fes_mj.common.errors import InputError
 
+if sys.platform != "win32":
+    import fcntl
+
 TEMPORARY = ".fes_mj-"  # how the names of temporary files begin
-MARKED = 4096  # bytes: the beginning of a file of ours, which can hold its name twice and escaped
+RECORD = ".fes_mj.sha256"  # in a folder: SHA-256, a line each, of what fes_mj wrote there without having been named
+PICTURES = (".png", ".svg")
 
 
 def csv_text(columns: Mapping[str, Any]) -> str:
@@ -29,22 +35,29 @@ def require_folder(folder: Path, what: str) -> None:
         raise InputError(f"{folder}: cannot write {what}: no permission; name a folder you can write to")
 
 
+def require_makeable(folder: Path, what: str) -> None:
+    """Raise InputError unless `folder` exists and can be written to, or can be made in one that does."""
+    require_folder(folder if folder.exists() else folder.parent, what)
+
+
 def make_folder(folder: Path, what: str) -> None:
     """Make `folder` in an existing one unless it is there. Raises InputError if that cannot be."""
-    if not folder.exists():
-        require_folder(folder.parent, what)
-        try:
-            folder.mkdir()
-        except OSError as error:
-            raise InputError(f"{folder}: cannot be made: {error.strerror}") from None
-    require_folder(folder, what)
+    require_makeable(folder, what)
+    try:
+        folder.mkdir(exist_ok=True)
+    except OSError as error:
+        raise InputError(f"{folder}: cannot be made: {error.strerror}") from None
 
 
-def require_writable(path: Path, what: str, suffix: str = "", inputs: Iterable[Path] = ()) -> None:
-    """Raise InputError unless a file that the user named can be put at `path` (and its name ends as it must).
+def require_writable(
+    path: Path | None, what: str, suffixes: str | tuple[str, ...] = "", inputs: Iterable[Path] = ()
+) -> None:
+    """Raise InputError unless a file that the user named, if any, can be put at `path` and its name ends as it must.
 
     A file that is there is replaced, but never one of `inputs`, under whatever name.
     """
+    if path is None:
+        return
     require_folder(path.parent, what)
     try:
         path.lstat()
@@ -56,52 +69,89 @@ def require_writable(path: Path, what: str, suffix: str = "", inputs: Iterable[P
         raise InputError(f"{path}: cannot write {what}: no file can have this name") from None
     if path.is_dir():
         raise InputError(f"{path}: cannot write {what}: this is a folder; name a file in it")
-    if suffix and path.suffix.lower() != suffix:
-        raise InputError(f"{path}: cannot write {what}: the name must end in {suffix}")
-    if path.exists():
-        for file in inputs:
-            if file.exists() and path.samefile(file):
-                raise InputError(
-                    f"{path}: cannot write {what}: it would replace {file}, which this command reads; "
-                    "give the output another name or folder"
-                )
-
-
-def require_replaceable(path: Path, what: str, mark: str, inputs: Iterable[Path] = ()) -> None:
-    """As require_writable, for a file that the user did not name but that is written beside one or into a folder.
-
-    A file that is there is replaced only if `mark` is in its first MARKED bytes, as in all that fes_mj writes there.
-    """
-    require_writable(path, what, inputs=inputs)
-    if path.exists():
-        with _named(path), path.open("rb") as file:
-            ours = mark.encode() in file.read(MARKED)
-        if not ours:
+    if not path.name.lower().endswith(suffixes):
+        allowed = suffixes if isinstance(suffixes, str) else " or ".join(suffixes)
+        raise InputError(f"{path}: cannot write {what}: the name must end in {allowed}")
+    for file in inputs:
+        if path.exists() and file.exists() and path.samefile(file):
             raise InputError(
-                f"{path}: cannot write {what}: a file that fes_mj did not write has this name; "
-                "move it, or give the output another name or folder"
+                f"{path}: cannot write {what}: it would replace {file}, which this command reads; "
+                "give the output another name or folder"
             )
 
 
+def require_replaceable(paths: Iterable[Path], what: str, inputs: Collection[Path] = ()) -> None:
+    """As require_writable, for files that the user did not name but that are written beside one or into a folder.
+
+    One that is there is replaced only while it is as fes_mj wrote it: its SHA-256 stands in the folder's RECORD.
+    """
+    for path in paths:
+        require_writable(path, what, inputs=inputs)
+        if path.exists():
+            with _named(path, "read"):
+                ours = _digest(path.read_bytes()) in _recorded(path.parent)
+            if not ours:
+                raise InputError(
+                    f"{path}: cannot write {what}: a file has this name that fes_mj did not write, or that was changed "
+                    "since; move it, or give the output another name or folder"
+                )
+
+
+def require_results(folder: Path, stem: str, suffixes: Iterable[str], inputs: Collection[Path] = ()) -> dict[str, Path]:
+    """Where a set of files goes in a folder that is made if its parent exists, by suffix; refused as by the others."""
+    require_makeable(folder, "the results")
+    paths = {suffix: folder / f"{stem}.{suffix}" for suffix in suffixes}
+    if folder.exists():
+        require_replaceable(paths.values(), "the results", inputs)
+    return paths
+
+
+def write_results(contents: Mapping[Path, str | bytes]) -> None:
+    """Write the set into its folder."""
+    make_folder(next(iter(contents)).parent, "the results")
+    write_files(contents, unnamed=contents.keys())
+
+
+def _digest(content: bytes) -> str:
+    import hashlib
+
+    return hashlib.sha256(content).hexdigest()
+
+
+def _recorded(folder: Path) -> list[str]:
+    """SHA-256 of what fes_mj wrote in a folder without having been given its name."""
+    record = folder / RECORD
+    return record.read_text(errors="replace").split() if record.is_file() else []
+
+
 @contextmanager
-def _named(path: Path) -> Iterator[None]:
+def _named(path: Path, deed: str = "written") -> Iterator[None]:
     """What the system refuses becomes an InputError that names the file."""
     try:
         yield
     except BrokenPipeError:  # a stream's, not a file's
         raise
     except OSError as error:
-        raise InputError(f"{path}: cannot be written: {error.strerror or error}") from None
+        raise InputError(f"{path}: cannot be {deed}: {error.strerror or error}") from None
 
 
 @contextmanager
 def _beside(path: Path) -> Iterator[Path]:
-    """An empty temporary file in the folder of `path`, with its suffix; gone afterwards, whenever a signal comes."""
+    """An empty temporary file in the folder of `path`, with its suffix; gone afterwards, whenever a signal comes.
+
+    Its lock is held meanwhile, by which others tell it from what a killed run left.
+    """
+    _tidy(path.parent)
     temporary = path.with_name(f"{TEMPORARY}{os.urandom(8).hex()}{path.suffix}")
     with _named(path):
         try:
-            temporary.touch(exist_ok=False)
-            yield temporary
+            with temporary.open("xb") as file:
+                if sys.platform == "win32":
+                    file.close()  # or nobody else could write it or rename it
+                else:
+                    with suppress(OSError):  # a file system without locks
+                        fcntl.flock(file, fcntl.LOCK_EX)
+                yield temporary
         finally:
             temporary.unlink(missing_ok=True)
 
@@ -118,10 +168,15 @@ def replacing(path: Path) -> Iterator[Path]:
 
 
 def remove_leftovers(folder: Path) -> None:
-    """Remove the temporary files that killed runs left in a folder which is this run's alone."""
-    for path in folder.glob(f"{TEMPORARY}*"):
-        if path.is_file():
-            path.unlink(missing_ok=True)
+    """Remove the temporary files that killed runs left in a folder, none of a run that lives."""
+    if sys.platform != "win32":
+        for path in folder.glob(f"{TEMPORARY}*"):
+            with suppress(OSError), path.open("r+b") as file:
+                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                path.unlink()
+
+
+_tidy = lru_cache(maxsize=64)(remove_leftovers)  # once for all that a run writes there
 
 
 def write_text(path: Path, text: str) -> None:
@@ -130,17 +185,24 @@ def write_text(path: Path, text: str) -> None:
         temporary.write_bytes(text.encode())
 
 
-def write_files(contents: Mapping[Path, str | bytes]) -> None:
+def write_files(contents: Mapping[Path, str | bytes], unnamed: Collection[Path] = ()) -> None:
     """Write files that belong together: all appear whole, or none does and what stood there still stands.
 
-    Raises InputError as replacing.
+    unnamed: those of them whose names fes_mj chose; they go into their folders' RECORD, by which require_replaceable
+    knows them again. Raises InputError as replacing.
     """
+    data = {path: content.encode() if isinstance(content, str) else content for path, content in contents.items()}
+    records = {}
+    for folder in {path.parent for path in unnamed}:
+        own = [_digest(data[path]) for path in unnamed if path.parent == folder]
+        records[folder / RECORD] = "\n".join(dict.fromkeys([*_recorded(folder), *own, ""])).encode()
+    data = records | data  # should a kill come between, what stands there is known, whether new or old
     with ExitStack() as stack:
-        new = {path: stack.enter_context(_beside(path)) for path in contents}
-        old = {path: stack.enter_context(_beside(path)) for path in contents if path.exists()}
-        for path, content in contents.items():
+        new = {path: stack.enter_context(_beside(path)) for path in data}
+        old = {path: stack.enter_context(_beside(path)) for path in data if path.exists()}
+        for path, content in data.items():
             with _named(path):
-                new[path].write_bytes(content.encode() if isinstance(content, str) else content)
+                new[path].write_bytes(content)
                 if path in old:
                     import shutil
 

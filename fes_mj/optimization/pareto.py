@@ -18,7 +18,6 @@ from fes_mj.optimization.search import Improved, Search
 POPULATION = 100
 FLUCTUATION = "fluctuation of energy"  # the coefficient, see evenness.fluctuation
 _ROWS = 12  # of the front's table
-CSV_MARK = f"power_{GROUPS[0]}_W,power_{GROUPS[1]}_W,{VARIED[0]},"
 
 
 @dataclass(frozen=True)
@@ -44,7 +43,7 @@ class Front:
         return rows
 
     def as_csv(self) -> str:
-        """A row a design; CSV_MARK begins it."""
+        """A row a design."""
         names, columns = [*(f"power_{group}_W" for group in GROUPS), *VARIED], [*self.power.T, *self.x.T]
         if self.fluctuation is not None:
             names, columns = [*names, "fluctuation"], [*columns, self.fluctuation]

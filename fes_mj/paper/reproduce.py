@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, TypeAlias
 from fes_mj.common.errors import InputError
 from fes_mj.common.markdown import Table
 from fes_mj.common.provenance import provenance
-from fes_mj.common.reading import DATA
+from fes_mj.common.reading import DATA, read_json
 from fes_mj.common.style import STYLE
-from fes_mj.common.writing import json_text, require_replaceable, write_files
+from fes_mj.common.writing import json_text, write_files
 from fes_mj.paper import (
     calibration,
     error_budget,
@@ -155,9 +155,10 @@ def _pages(facts: Known, runs: Runs, done: Done) -> dict[str, tuple[str, list[Ta
 
 def require_ours(folder: Path) -> None:
     """Raise InputError unless a folder holds an earlier reproduction, which is replaced, or no file at all."""
-    if not (folder / RECORD).exists() and any(path.is_file() for path in folder.rglob("*")):
-        raise InputError(f"{folder}: this folder is not empty and holds no {RECORD}; name a new one")
-    require_replaceable(folder / RECORD, "the results", '{\n  "provenance": {\n    "fes_mj": ')
+    record = folder / RECORD
+    earlier = read_json(record, "record of the results").get("provenance") if record.exists() else None
+    if not (isinstance(earlier, dict) and "fes_mj" in earlier) and any(path.is_file() for path in folder.rglob("*")):
+        raise InputError(f"{folder}: this folder is not empty and holds no {RECORD} of fes_mj; name a new one")
 
 
 def inputs() -> list[Path]:

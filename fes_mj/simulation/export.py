@@ -20,8 +20,6 @@ from fes_mj.simulation.appearance import FIELD_OF_VIEW, Spec, framing, lowest_po
 from fes_mj.simulation.road_mjcf import ROAD
 from fes_mj.statics.inverse_dynamics import crank_moment
 
-# What of each file stands at its beginning (files.MARKED) and in nobody else's file.
-MARKS = {"model": "Written by fes_mj", "scene": ' scene">\n  <include file="', "table": ",quasi_static_crank_Nm\n"}
 SIDECAR_ROWS = 720  # a turn: every half degree
 CAMERA_SIDE = (-0.55, 0.80, 0.25)  # of the oblique camera: from the front right, a little above
 LIGHT = (-0.5, 1.0, 3.0)  # m from the middle of the model
@@ -55,7 +53,7 @@ _ROAD_COMMENTS = {
 
 def mjcf_text(spec: Spec) -> str:
     """A model of build_mjcf as commented MJCF that reloads bit for bit."""
-    heading = f"{spec.comment}. {MARKS['model']} {version('fes-mj')}; m, kg, s, rad."
+    heading = f"{spec.comment}. Written by fes_mj {version('fes-mj')}; m, kg, s, rad."
     spec.comment = re.sub("-(?=-)", "- ", heading)  # no comment may hold two hyphens in a row
     spec.compile()
     on_road = any(joint.name == ROAD for joint in spec.joints)

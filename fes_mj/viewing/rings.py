@@ -21,7 +21,6 @@ from fes_mj.riding.starts import Starts
 from fes_mj.riding.stimulation import CORE, MUSCLES, Window
 from fes_mj.viewing.charts import any_letters, svg_text
 
-MARK = "<!-- Written by fes_mj: starts from rest -->"
 _RING, _WIDTH = 0.28, 0.11  # distance of two rings; of the band of a window, beside that of its stimulation
 _INNER = 0.30
 
@@ -95,7 +94,7 @@ def starts_svg(starts: Starts) -> str:
             axes.text(0.5, 0.5 + height, text, ha="center", va="center", color=colour, transform=axes.transAxes)
         title = f"{ride.design.name}, {ride.moments.name}, {ride.transmission}, {100 * ride.road.slope:g} %"
         figure.text(0.5, 0.94, literal(title), ha="center", size=11, weight="bold")
-        return f"{MARK}\n{svg_text(figure)}"
+        return f"<!-- Written by fes_mj: starts from rest -->\n{svg_text(figure)}"
 
 
 def _clockwise(axes: Any) -> Any:

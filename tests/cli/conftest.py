@@ -1,10 +1,12 @@
 """Running a command line and reading what it says."""
 
 import json
+from pathlib import Path
 
 import pytest
 
 from fes_mj.cli.app import run
+from fes_mj.common.writing import RECORD
 
 
 def result(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str, str]:
@@ -12,6 +14,11 @@ def result(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, st
     code = run(arguments)
     captured = capsys.readouterr()
     return code, captured.out, captured.err
+
+
+def names(folder: Path) -> set[str]:
+    """Names of the files in a folder, but for fes_mj's own record of them."""
+    return {path.name for path in folder.iterdir()} - {RECORD}
 
 
 def answer(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, dict]:

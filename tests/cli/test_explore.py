@@ -45,7 +45,7 @@ def test_refusals(capsys: pytest.CaptureFixture[str]) -> None:
         port = taken.getsockname()[1]
         for arguments, message in (
             (["d1", "--port", str(port)], f"--port {port} is in use by another program"),
-            (["d1", "--port", "70000"], "--port is 70000; it must be from 0 to 65535"),
+            (["d1", "--port", "70000"], '"70000" for --port. Must be <= 65535.'),
             (["d7"], "d7: no such design"),
         ):
             assert run(["explore", *arguments, "--no-browser"]) == 2

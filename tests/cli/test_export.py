@@ -8,13 +8,14 @@ import mujoco
 import pytest
 
 from fes_mj.cli.app import run
+from tests.cli.conftest import names
 
 
 def test_export_writes_model_table_and_scene(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     model = tmp_path / "mine.xml"
     arguments = ["export", "d1", "-o", str(model), "--variant", "two-legs", "--variant", "passive", "--scene"]
     assert run(arguments) == 0
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["mine.csv", "mine.xml", "scene.xml"]
+    assert names(tmp_path) == {"mine.csv", "mine.xml", "scene.xml"}
     loaded = mujoco.MjModel.from_xml_path(str(tmp_path / "scene.xml"))
     assert (loaded.nu, loaded.nv) == (0, 9)
     assert (tmp_path / "mine.csv").read_text().startswith("crank_angle_deg,crank_angle_from_tdc_deg,right_knee_deg,")
@@ -90,4 +91,9 @@ def test_a_file_that_nobody_named_is_replaced_only_if_it_is_ours(
     assert [path.name for path in tmp_path.iterdir()] == [stranger]
     (tmp_path / stranger).unlink()
     assert run(arguments) == 0
-    assert run([*arguments, "--variant", "two-legs"]) == 0
+    assert run([*arguments, "--legs", "2"]) == 0
+    with (tmp_path / stranger).open("a") as file:  # somebody's work on what was ours
+        file.write(" ")
+    edited = (tmp_path / stranger).read_bytes()
+    assert run(arguments) == 2
+    assert (tmp_path / stranger).read_bytes() == edited

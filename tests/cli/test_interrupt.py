@@ -66,7 +66,7 @@ def _contents(folder: Path) -> dict[str, bytes]:
 def test_an_interrupted_run_leaves_earlier_results(how: signal.Signals, tmp_path: Path) -> None:
     _run("simulate", "d1", "--out", str(tmp_path))
     before = _contents(tmp_path)
-    assert len(before) == 3
+    assert len(before) == 4  # result, cycle, model, and the record of the three
     code, errors = _stop(how, "simulate", "d1", "--turns", "300", "--out", str(tmp_path))
     assert _contents(tmp_path) == before
     if how is signal.SIGKILL:

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 import fes_mj
+from tests.cli.conftest import names
 
 pytestmark = [
     pytest.mark.process,
@@ -23,7 +24,7 @@ def shell(command: str, folder: Path, **environment: str) -> subprocess.Complete
 
 
 @pytest.mark.parametrize(
-    "command", ["static d1", "static d1 --json", "explain", "static --help", "--help", "--version"]
+    "command", ["static d1", "static d1 --json", "validate --explain all", "static --help", "--help", "--version"]
 )
 def test_standard_output(command: str, tmp_path: Path) -> None:
     full = shell(f"fes_mj {command} >/dev/full", tmp_path)
@@ -40,7 +41,7 @@ def test_a_reader_that_leaves_does_not_stop_the_files(tmp_path: Path) -> None:
     assert (done.returncode, done.stderr) == (0, b"")
     done = shell("fes_mj export d1 -o a.xml | true; exit ${PIPESTATUS[0]}", tmp_path)
     assert (done.returncode, done.stderr) == (0, b"")
-    assert {path.name for path in tmp_path.iterdir()} == {"a.xml", "a.csv"}
+    assert names(tmp_path) == {"a.xml", "a.csv"}
 
 
 @pytest.mark.parametrize("rest", ["2>&-", "2>/dev/full", "2>&1 >&- | true; exit ${PIPESTATUS[0]}"])

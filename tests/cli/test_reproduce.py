@@ -34,7 +34,12 @@ def test_only_an_earlier_reproduction_is_replaced(tmp_path: Path, capsys: pytest
     require_ours(tmp_path)
     (stranger := tmp_path / "figures" / "power.png").touch()
     assert run(["reproduce", "--out", str(tmp_path)]) == 2
-    assert "this folder is not empty and holds no reproduction.json; name a new one" in capsys.readouterr().err
+    assert (
+        "this folder is not empty and holds no reproduction.json of fes_mj; name a new one" in capsys.readouterr().err
+    )
+    (tmp_path / "reproduction.json").write_text('{"provenance": {"theirs": 1}}')
+    assert run(["reproduce", "--out", str(tmp_path)]) == 2
+    assert "of fes_mj" in capsys.readouterr().err
     stranger.rename(tmp_path / "reproduction.json")
     assert run(["reproduce", "--out", str(tmp_path)]) == 2
-    assert "a file that fes_mj did not write" in capsys.readouterr().err
+    assert "reproduction.json: the record of the results is not valid JSON" in capsys.readouterr().err

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.cli.conftest import answer, result
+from tests.cli.conftest import answer, names, result
 
 KEYS = {
     "design", "group", "transmission", "slope_percent", "duration_s", "rides", "speed_kmh", "cadence_rpm",
@@ -35,9 +35,7 @@ def test_a_tricycle_that_stops_is_a_result(capsys: pytest.CaptureFixture[str]) -
 
 def test_out_writes_result_ride_and_model(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     assert result(capsys, "ride", "trt", "--duration", "2", "-q", "--out", str(tmp_path)) == (0, "", "")
-    assert {path.name for path in tmp_path.iterdir()} == {
-        f"trt-p1p2-ride.{suffix}" for suffix in ("json", "csv", "xml")
-    }
+    assert names(tmp_path) == {f"trt-p1p2-ride.{suffix}" for suffix in ("json", "csv", "xml")}
     content = json.loads((tmp_path / "trt-p1p2-ride.json").read_text())
     table = np.genfromtxt(tmp_path / "trt-p1p2-ride.csv", delimiter=",", names=True)
     assert table["distance_m"].max() == pytest.approx(content["distance_m"], rel=1e-6)
@@ -47,19 +45,19 @@ def test_out_writes_result_ride_and_model(capsys: pytest.CaptureFixture[str], tm
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["--slope", "60"], "--slope is 60; it must be a slope in percent"),
-        (["--launch", "0"], "--launch is 0; for a start from rest give its crank angle: --from-rest DEG"),
-        (["--launch", "-3"], "--launch is -3; it must be a speed in km/h from 0.1 to 60"),
-        (["--launch", "5", "--from-rest", "10"], "--launch and --from-rest exclude each other"),
-        (["--tricycle-mass", "-20"], "--tricycle-mass is -20; it must be a mass in kg"),
-        (["--rolling-mass", "-1"], "--rolling-mass is -1"),
+        (["--slope", "60"], '"60.0" for --slope. Must be <= 30.'),
+        (["--launch", "0"], '"0.0" for --launch. Must be >= 0.1.'),
+        (["--launch", "-3"], '"-3.0" for --launch'),
+        (["--launch", "5", "--from-rest", "10"], "Mutually exclusive arguments: {--launch, --from-rest}"),
+        (["--tricycle-mass", "-20"], '"-20.0" for --tricycle-mass. Must be >= 1.'),
+        (["--rolling-mass", "-1"], '"-1.0" for --rolling-mass'),
         (["--lag", "0.7"], "--lag is 0.7; it must be shorter than a turn of the crank, which takes 0.623 s in d1"),
-        (["--lag", "nan"], "--lag is nan"),
-        (["--duration", "0"], "--duration is 0; it must be a time in s from 1 to 300"),
-        (["--crr", "2"], "--crr is 2"),
-        (["--drag-area", "inf"], "--drag-area is inf"),
+        (["--lag", "nan"], '"nan" for --lag'),
+        (["--duration", "0"], '"0.0" for --duration. Must be >= 1.'),
+        (["--crr", "2"], '"2.0" for --crr'),
+        (["--drag-area", "inf"], '"inf" for --drag-area'),
         (["--torque-velocity", "katz"], "Invalid value"),
-        (["--out", "nowhere"], "nowhere: cannot write the results: the folder does not exist"),
+        (["--out", "nowhere/out"], "nowhere: cannot write the results: the folder does not exist"),
     ],
 )
 def test_bad_input(arguments: list[str], words: str, capsys: pytest.CaptureFixture[str]) -> None:

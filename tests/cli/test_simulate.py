@@ -10,7 +10,7 @@ import pytest
 from fes_mj.cli.app import run
 from fes_mj.linkage.design_file import load_design
 from fes_mj.simulation.time_step import steps_per_turn
-from tests.cli.conftest import answer, result
+from tests.cli.conftest import answer, names, result
 
 
 def test_simulate_json_has_the_promised_keys(capsys: pytest.CaptureFixture[str]) -> None:
@@ -48,8 +48,9 @@ def test_a_run_that_does_not_agree_exits_with_1(capsys: pytest.CaptureFixture[st
 
 
 def test_out_writes_result_cycle_and_model(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    tmp_path /= "made"
     assert result(capsys, "simulate", "d2", "-q", "--out", str(tmp_path))[0] == 0
-    assert {path.name for path in tmp_path.iterdir()} == {"d2-p1p2.json", "d2-p1p2.csv", "d2-p1p2.xml"}
+    assert names(tmp_path) == {"d2-p1p2.json", "d2-p1p2.csv", "d2-p1p2.xml"}
     power = json.loads((tmp_path / "d2-p1p2.json").read_text())["power_mean_W"]
     cycle = np.genfromtxt(tmp_path / "d2-p1p2.csv", delimiter=",", names=True)
     assert cycle["crank_power_W"].mean() == pytest.approx(power, rel=1e-6)
@@ -84,12 +85,15 @@ def test_results_replace_only_results(tmp_path: Path, capsys: pytest.CaptureFixt
     for suffix in ("json", "csv", "xml"):
         (stranger := tmp_path / f"d1-m.{suffix}").write_text("{}")
         assert run(["simulate", "d1", "--moments", str(moments), "--out", str(tmp_path)]) == 2
-        assert f"d1-m.{suffix}: cannot write the results: a file that fes_mj did not" in capsys.readouterr().err
+        assert (
+            f"d1-m.{suffix}: cannot write the results: a file has this name that fes_mj did not"
+            in capsys.readouterr().err
+        )
         assert {*tmp_path.iterdir()} == {moments, stranger}
         stranger.unlink()
     for _ in range(2):
         assert run(["simulate", "d1", "--moments", str(moments), "--out", str(tmp_path), "-q"]) in (0, 1)
-    assert len([*tmp_path.iterdir()]) == 4
+    assert names(tmp_path) == {"m.csv", "d1-m.json", "d1-m.csv", "d1-m.xml"}
 
 
 def test_a_video_does_not_replace_an_input(tmp_path: Path) -> None:

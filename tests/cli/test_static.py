@@ -7,7 +7,11 @@ import numpy as np
 import pytest
 
 import fes_mj
-from tests.cli.conftest import result
+from fes_mj.common.units import RPM
+from fes_mj.linkage.design_file import load_design
+from fes_mj.moments.files import load_moments
+from fes_mj.statics.turn import quasi_static, ratio_sd
+from tests.cli.conftest import answer, result
 from tests.linkage.test_design_file import written
 
 ROCKER = ("rocker_pivot", "rocker_joint")
@@ -110,3 +114,35 @@ def test_a_rider_by_name(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> 
     content = json.loads(result(capsys, "static", str(path), "--json")[1])
     assert content["power_mean_W"] > 0
     assert content["peak_force_leg_mass_sd_N"].keys() == content["peak_force_N"].keys()
+
+
+def test_several_designs_are_compared(capsys: pytest.CaptureFixture[str]) -> None:
+    code, content = answer(capsys, "static", "trt", "d1", "r1", "--curves")
+    alone = answer(capsys, "static", "d1", "--curves")[1]
+    assert code == 0
+    assert content["designs"][1] == alone
+    assert [ratio["design"] for ratio in content["ratios"]] == ["trt", "d1", "r1"]
+    trt, d1 = (quasi_static(load_design(name), load_moments("p1p2")) for name in ("trt", "d1"))
+    first, second, _ = content["ratios"]
+    assert (first["power_ratio"], first["power_ratio_sd"]) == (1.0, 0.0)
+    assert second["power_ratio"] == pytest.approx(d1.power_mean / trt.power_mean)
+    assert second["power_ratio_sd"] == pytest.approx(ratio_sd(d1, trt))
+    text = result(capsys, "static", "trt", "d1")[1]
+    assert f"{second['power_ratio']:.3f} +- {second['power_ratio_sd']:.3f}" in text
+
+
+def test_two_legs_keep_the_mean_of_one_and_add_their_powers(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    one, two = (answer(capsys, "static", "r2", "--cadence", "50", "--legs", legs)[1] for legs in "12")
+    assert two["power_mean_W"] == pytest.approx(one["power_mean_W"])
+    power = quasi_static(load_design("r2"), load_moments("p1p2"), 50 * RPM).power
+    both = power + np.roll(power, len(power) // 2)
+    assert two["power_peak_to_peak_W"] == pytest.approx(np.ptp(both))
+    assert two["inactive_zone_share"] == pytest.approx(np.mean(both < 0))
+    own = tmp_path / "own.csv"
+    own.write_text("crank_angle_deg,knee_Nm,hip_Nm\n0,10,0\n90,20,0\n180,0,5\n270,-10,0\n")
+    weak = tmp_path / "weak.csv"
+    weak.write_text("crank_angle_deg,knee_Nm,hip_Nm\n0,5,0\n90,10,0\n180,0,2.5\n270,-5,0\n")
+    pair = answer(capsys, "static", "r2", "d1", "--legs", "2", "--moments", str(own), "--moments", str(weak))[1]
+    strong = answer(capsys, "static", "r2", "--moments", str(own))[1]
+    assert pair["designs"][0]["power_mean_W"] == pytest.approx(0.75 * strong["power_mean_W"], rel=1e-6)
+    assert pair["ratios"][1]["power_ratio_sd"] is None

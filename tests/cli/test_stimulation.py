@@ -50,9 +50,9 @@ def test_several_cadences_and_none(capsys: pytest.CaptureFixture[str], tmp_path:
     ("arguments", "said"),
     [
         (["d9"], "d9"),
-        (["d1", "--cadence", "0"], "--cadence is 0"),
-        (["d1", "--cadence", "60", "--cadence", "nan"], "--cadence is nan"),
-        (["d1", "--lag", "-0.1"], "--lag is -0.1; it must be a time in s from 0 to 1"),
+        (["d1", "--cadence", "0"], "for --cadence. Must be >= 1."),
+        (["d1", "--cadence", "60", "--cadence", "nan"], "for --cadence. Must be"),
+        (["d1", "--lag", "-0.1"], '"-0.1" for --lag. Must be >= 0.'),
         (
             ["d1", "--lag", "0.7"],
             "--lag is 0.7; it must be shorter than a turn of the crank, which takes 0.623 s in d1",

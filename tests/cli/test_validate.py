@@ -69,7 +69,7 @@ def test_an_own_design_is_validated_without_the_paper(capsys: pytest.CaptureFixt
         (("d1", "--junit", "nowhere/out.xml"), "does not exist"),
         (("d1", "--video", "a.mp4"), "--report"),
         (("d1", "--report", "out.html", "--video", "none.mp4"), "cannot read the video"),
-        (("d1", "--group", "p1p2", "--moments", "x.csv"), "exclude each other"),
+        (("d1", "--group", "p1p2", "--moments", "x.csv"), "Mutually exclusive"),
     ],
 )
 def test_bad_input(

@@ -1,4 +1,4 @@
-"""`fes_mj view` where there is no screen."""
+"""`fes_mj simulate --view` where there is no screen."""
 
 import sys
 
@@ -15,5 +15,5 @@ def test_without_a_screen_there_is_one_message(
     """Also where a screen is named that does not answer."""
     monkeypatch.setenv("DISPLAY", display)
     monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
-    assert run(["view", "d1"]) == 3
+    assert run(["simulate", "d1", "-q", "--view"]) == 3
     assert capsys.readouterr().err.startswith("fes_mj: the viewer needs a screen and there is none; make a video")

@@ -2,6 +2,8 @@
 
 import errno
 import os
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -10,7 +12,18 @@ import pytest
 from fes_mj.common import reading as inputs
 from fes_mj.common.errors import InputError
 from fes_mj.common.reading import Section, read_json, read_table, read_text, read_toml
-from fes_mj.common.writing import csv_text, replacing, require_replaceable, require_writable, write_files, write_text
+from fes_mj.common.writing import (
+    RECORD,
+    csv_text,
+    remove_leftovers,
+    replacing,
+    require_replaceable,
+    require_results,
+    require_writable,
+    write_files,
+    write_results,
+    write_text,
+)
 
 
 def _section(tmp_path: Path, text: str) -> Section:
@@ -144,13 +157,52 @@ def test_a_named_file_is_replaced_unless_it_is_an_input(measured: Path) -> None:
     require_writable(measured, "the table", ".csv", [measured.with_name("other.csv")])
 
 
-def test_a_file_that_nobody_named_is_replaced_only_if_it_is_ours(measured: Path) -> None:
-    with pytest.raises(InputError, match="did not write"):
-        require_replaceable(measured, "the table", "a,b")
-    measured.write_text("a,b\n1,2\n")
-    require_replaceable(measured, "the table", "a,b")
+def test_a_file_that_nobody_named_is_replaced_only_as_it_was_written(measured: Path) -> None:
+    other = measured.with_name("n.csv")
+    for _ in range(2):  # the same bytes again are known once
+        with pytest.raises(InputError, match=r"m\.csv: cannot write the table: a file has this name"):
+            require_replaceable([other, measured], "the table")
+        write_files({other: "a,b\n1,2\n"}, unnamed=[other])
+    require_replaceable([other], "the table")
+    assert len((measured.parent / RECORD).read_text().split()) == 1
+    write_files({other: "a,b\n3,4\n"}, unnamed=[other])
+    require_replaceable([other], "the table")
     with pytest.raises(InputError, match="would replace"):
-        require_replaceable(measured, "the table", "a,b", [measured])
+        require_replaceable([other], "the table", [other])
+    other.write_text("a,b\n3,5\n")
+    with pytest.raises(InputError, match="changed since"):
+        require_replaceable([other], "the table")
+
+
+def test_a_set_of_results_makes_its_folder(tmp_path: Path) -> None:
+    folder = tmp_path / "made"
+    paths = require_results(folder, "a", ("json", "csv"))
+    assert not folder.exists()
+    write_results(dict.fromkeys(paths.values(), "new"))
+    assert {path.name for path in folder.iterdir()} == {"a.json", "a.csv", RECORD}
+    assert require_results(folder, "a", ("json", "csv")) == paths
+    with pytest.raises(InputError, match="does not exist"):
+        require_results(tmp_path / "no" / "made", "a", ("json",))
+    with pytest.raises(InputError, match="is not a folder"):
+        require_results(folder / "a.csv", "a", ("json",))
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no locks there")
+def test_the_next_run_removes_what_a_killed_one_left_and_nothing_of_one_that_lives(tmp_path: Path) -> None:
+    target = tmp_path / "a.csv"
+    script = (
+        "import os, pathlib, signal, sys\n"
+        "from fes_mj.common.writing import replacing\n"
+        "with replacing(pathlib.Path(sys.argv[1])):\n"
+        "    os.kill(os.getpid(), signal.SIGKILL)\n"
+    )
+    subprocess.run([sys.executable, "-c", script, str(target)], check=False)
+    assert len([*tmp_path.iterdir()]) == 1
+    with replacing(target) as living:
+        assert [*tmp_path.iterdir()] == [living]
+        remove_leftovers(tmp_path)
+        living.write_text("whole")
+    assert [path.name for path in tmp_path.iterdir()] == ["a.csv"]
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,123 @@
+"""What several commands print of a turn and of checks."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fes_mj.common.console import conclude, number, print_table, say, verdict
+from fes_mj.common.units import RPM
+from fes_mj.statics.joint_forces import NET_FORCE, JointForces, KneeLoad, peaks
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from rich.text import Text
+
+    from fes_mj.common.arrays import ComplexArray
+    from fes_mj.common.checks import Check
+    from fes_mj.linkage.design import Design
+    from fes_mj.moments.joint_moments import JointMoments
+    from fes_mj.statics.turn import QuasiStatic
+
+
+def heading(result: QuasiStatic, legs: int = 1) -> str:
+    """Which design, whose moments, how fast."""
+    which = "one leg" if legs == 1 else "two legs, values of one"
+    return f"{what_moves(result.design, result.moments)}; {result.cadence / RPM:.1f} rpm; {which}"
+
+
+def what_moves(design: Design, moments: JointMoments) -> str:
+    """Which design, whose moments."""
+    relation = moments.torque_velocity
+    faster = f" with the torque-velocity relation of {relation.name.title()}" if relation else ""
+    return f"{design.name}, {design.linkage.architecture.title}; {moments.name}{faster}"
+
+
+def power_rows(result: QuasiStatic) -> list[tuple[str, str]]:
+    """Quantity and quasi-static value, as text."""
+    return [
+        ("mean crank power, W", with_error(result.power_mean, result.power_sd)),
+        ("work per turn, J", f"{result.work_per_turn:.3f}"),
+        *((f"{joint} angle, deg", span(ends)) for joint, ends in result.joint_range_deg.items()),
+    ]
+
+
+def turn_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """How even the power is, how well the linkage transmits, how large it is, as text."""
+    return [
+        ("inactive zone, % of the turn", f"{100 * summary['inactive_zone_share']:.1f}"),
+        ("power peak to peak, W", f"{summary['power_peak_to_peak_W']:.1f}"),
+        ("power peak to mean", f"{summary['power_peak_to_mean']:.2f}"),
+        ("coefficient of fluctuation of energy", f"{summary['energy_fluctuation']:.3f}"),
+        ("smallest transmission angle, deg", f"{summary['transmission_angle_min_deg']:.1f}"),
+        ("length x height, cm", f"{100 * summary['length_m']:.0f} x {100 * summary['height_m']:.0f}"),
+    ]
+
+
+def print_forces(joint_forces: JointForces) -> None:
+    """Print the peak forces of the joints, the knee's load in body weights, and what that leaves out."""
+    both = (joint_forces.static.reactions, joint_forces.with_masses)
+    cells = [(joint.replace("_", " "), *(f"{peaks(forces)[joint]:.0f}" for forces in both)) for joint in both[0]]
+    knees = [joint_forces.knee(forces) for forces in both]
+    cells += [
+        (f"knee {kind}, body weights", *(f"{getattr(knee, kind):.3f}" for knee in knees)) for kind in KneeLoad._fields
+    ]
+    print_table("Largest forces, N", ("joint", "moments alone", "with masses"), cells)
+    say(f"note: {NET_FORCE[0].lower()}{NET_FORCE[1:]}")
+
+
+def span(ends: Sequence[float]) -> str:
+    """A range of angles."""
+    return f"{ends[0]:.1f} to {ends[1]:.1f}"
+
+
+def with_error(power: float, deviation: float | None) -> str:
+    """A power in W, with its standard deviation where that is known."""
+    return f"{power:.3f}" if deviation is None else f"{power:.2f} +- {deviation:.2f}"
+
+
+def or_dash(value: float | None, spec: str, missing: str = "-") -> str:
+    """A number as text, or what stands for one that is missing."""
+    return missing if value is None else format(value, spec)
+
+
+def force_rows(forces: Mapping[str, ComplexArray]) -> list[tuple[str, str, str]]:
+    """Mean and largest size of forces over the turn, N."""
+    sizes = {name.replace("_", " "): np.abs(force) for name, force in forces.items()}
+    return [(name, f"{size.mean():.1f}", f"{size.max():.1f}") for name, size in sizes.items()]
+
+
+def print_budget(*legs: QuasiStatic) -> None:
+    """Print how sure the mean power is, all in all, if the error of the moments is known."""
+    from fes_mj.budget.budget import error_budget  # draws hundreds of linkages: as long as all else together
+
+    if budget := error_budget(*legs):
+        say(f"error budget of the mean power: {budget.text}")
+
+
+def print_notes(result: QuasiStatic, of: str = "") -> None:
+    """Print what a reader must know of a result, if anything; of: which one, where there are several."""
+    for note in result.notes:
+        say(f"note: {of}{note}")
+    if result.extrapolation.verdict:
+        conclude(False, f"{of}EXTRAPOLATED", f": {result.extrapolation.verdict}.")
+
+
+def print_checks(title: str, checks: Sequence[Check]) -> None:
+    """Print name, value, limit and verdict of checks."""
+    rows: list[tuple[str | Text, ...]] = [
+        (check.name, number(check.value, check.unit), number(check.limit, check.unit), verdict(check.ok))
+        for check in checks
+    ]
+    print_table(title, ("check", "value", "limit", "verdict"), rows)
+
+
+def conclude_checks(who: str, checks: Sequence[Check], agreeing: str = "") -> None:
+    """Say whether two ways to the same numbers agree, and what more there is to say if they do."""
+    failed = ", ".join(check.name for check in checks if not check.ok)
+    if failed:
+        conclude(False, f"{who} do not agree", f": {failed}; `fes_mj validate --explain CHECK` says more.")
+    else:
+        conclude(True, f"{who} agree", f"{agreeing}.")
