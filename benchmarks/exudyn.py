@@ -29,7 +29,7 @@ from fes_mj.simulation.compiled import compiled_loop  # noqa: E402
 from fes_mj.simulation.mjcf import build_mjcf  # noqa: E402
 from fes_mj.simulation.sensors import Sensors  # noqa: E402
 from fes_mj.simulation.stepping import PRE_ROLL, feedback_loop, run_loop  # noqa: E402
-from fes_mj.statics.inverse_dynamics import crank_moment  # noqa: E402
+from fes_mj.statics.equilibrium import crank_moment  # noqa: E402
 
 DESIGNS, ASKED, REPETITIONS = ("d1", "r2"), 0.005, 15  # W rms
 STEPS, MOMENTS = [round(200 * 2 ** (k / 8)) for k in range(33)], fes_mj.load_moments("p1p2")  # a turn

@@ -6,7 +6,7 @@ import fes_mj
 from fes_mj.linkage.kinematics import solve
 from fes_mj.linkage.loads import body_loads
 from fes_mj.simulation.stepping import FORCE_EVERY
-from fes_mj.statics.turn import equilibrium
+from fes_mj.statics.equilibrium import equilibrium
 
 design, moments = fes_mj.load_design("r1"), fes_mj.load_moments("p1p3")
 static = fes_mj.quasi_static(design, moments)

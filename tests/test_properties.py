@@ -17,8 +17,7 @@ from fes_mj.linkage.joints import JOINTS
 from fes_mj.linkage.loads import body_loads
 from fes_mj.moments.joint_moments import COLUMNS, JointMoments
 from fes_mj.moments.torque_map import torque_map
-from fes_mj.statics.inverse_dynamics import crank_moment
-from fes_mj.statics.turn import equilibrium, virtual_work
+from fes_mj.statics.equilibrium import crank_moment, equilibrium, virtual_work
 from fes_mj.verification.geometry import closure_error, wrong_branch
 from fes_mj.verification.references import differences, exact_curves
 from tests.linkages import between, designs, periodic_moments

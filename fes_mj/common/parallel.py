@@ -14,7 +14,7 @@ from typing import Any, NamedTuple, TypeVar
 from fes_mj.common.errors import InputError, UnstableError, require_extra
 
 Task = TypeVar("Task")
-Outcome = TypeVar("Outcome")
+Result = TypeVar("Result")
 PATIENCE = "5s"  # for a scheduler to answer
 
 
@@ -29,8 +29,8 @@ HERE = Workers()  # this process
 
 
 def run_tasks(
-    function: Callable[[Task], Outcome], tasks: Sequence[Task], workers: Workers = HERE
-) -> Iterator[tuple[int, Outcome]]:
+    function: Callable[[Task], Result], tasks: Sequence[Task], workers: Workers = HERE
+) -> Iterator[tuple[int, Result]]:
     """Yield (index, function(task)) as tasks finish, in any order.
 
     A task should take seconds. Raises InputError for a scheduler that does not answer or fewer than one job,
@@ -56,7 +56,7 @@ def run_tasks(
             raise
 
 
-def _numbered(function: Callable[[Task], Outcome], index: int, task: Task) -> tuple[int, Outcome]:
+def _numbered(function: Callable[[Task], Result], index: int, task: Task) -> tuple[int, Result]:
     return index, function(task)
 
 

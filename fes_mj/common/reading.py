@@ -150,7 +150,7 @@ def read_json(path: Path, what: str) -> dict[str, Any]:
 
 
 @dataclass(frozen=True)
-class Table:
+class TextTable:
     """A text table, whose cells are read column by column.
 
     preamble: the text above the header, which is line `start`. lines: number of each row's line. rows: their cells.
@@ -175,7 +175,7 @@ class Table:
         return np.array([_cell(self.path, line, name, row[place]) for line, row in cells], float)
 
 
-def read_table(path: Path, what: str, *, after: str = "", commas: bool = True) -> Table:
+def read_table(path: Path, what: str, *, after: str = "", commas: bool = True) -> TextTable:
     """A table with a header line; blank lines are passed over.
 
     after: the line above the header, if that is not the file's first. commas: between the columns, or blanks and tabs.
@@ -201,7 +201,7 @@ def read_table(path: Path, what: str, *, after: str = "", commas: bool = True) -
         if row:
             lines.append(number)
             rows.append(row)
-    return Table(path, "\n".join(text[:start]), start + 1, header, lines, rows)
+    return TextTable(path, "\n".join(text[:start]), start + 1, header, lines, rows)
 
 
 def _cell(path: Path, line: int, column: str, cell: str) -> float:

@@ -12,15 +12,16 @@ from fes_mj.linkage import kinematics
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.joints import PerJoint
 from fes_mj.linkage.kinematics import Motion
-from fes_mj.linkage.loads import Load, body_loads
+from fes_mj.linkage.loads import BodyLoad, body_loads
 from fes_mj.linkage.segments import GRAVITY
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.torque_map import TorqueMap, torque_map
 from fes_mj.simulation.appearance import Spec
 from fes_mj.simulation.bench import Simulation, simulate
 from fes_mj.simulation.mjcf import build_mjcf
+from fes_mj.statics.equilibrium import equilibrium, virtual_work
 from fes_mj.statics.extrapolation import turning_in_range
-from fes_mj.statics.turn import QuasiStatic, equilibrium, virtual_work
+from fes_mj.statics.turn import QuasiStatic
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,8 +39,8 @@ class Setup:
     legs: int = 1
 
     def __post_init__(self) -> None:
-        if math.isnan(self.cadence):
-            object.__setattr__(self, "cadence", self.design.linkage.cadence)
+        given = None if math.isnan(self.cadence) else self.cadence
+        object.__setattr__(self, "cadence", self.design.crank_speed(given))
 
 
 class Pipeline(Setup):
@@ -57,12 +58,12 @@ class Pipeline(Setup):
         """Knee and hip moment along a motion of the leg with this name prefix, N m."""
         return self.torque.of(leg).along(motion, self.cadence)
 
-    def loads(self, motion: Motion, mass_scale: float = 1.0, gravity: float = GRAVITY) -> dict[str, Load]:
+    def loads(self, motion: Motion, mass_scale: float = 1.0, gravity: float = GRAVITY) -> dict[str, BodyLoad]:
         """Weight and inertia along a motion."""
         return body_loads(motion, self.cadence, mass_scale, gravity)
 
     def equilibrium(
-        self, motion: Motion, joint_moment: PerJoint[FloatArray], loads: dict[str, Load] | None = None
+        self, motion: Motion, joint_moment: PerJoint[FloatArray], loads: dict[str, BodyLoad] | None = None
     ) -> tuple[FloatArray, dict[str, ComplexArray]]:
         """Crank moment and reactions by free-body equilibrium."""
         return equilibrium(motion, joint_moment, loads)
@@ -97,5 +98,5 @@ class Pipeline(Setup):
     def crank_moment(
         self, motion: Motion, mass_scale: float = 1.0, gravity: float = GRAVITY, leg: str = ""
     ) -> FloatArray:
-        """Exact crank moment of a leg at constant speed, N m, without MuJoCo (inverse_dynamics.crank_moment)."""
+        """Exact crank moment of a leg at constant speed, N m, without MuJoCo (equilibrium.crank_moment)."""
         return virtual_work(motion, self.joint_moment(motion, leg), self.loads(motion, mass_scale, gravity))

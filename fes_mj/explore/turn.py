@@ -17,8 +17,8 @@ from fes_mj.linkage.legs import all_legs
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.uncertainty import instant_power_weights, with_sd
 from fes_mj.statics.characteristics import motion_characteristics, power_characteristics
+from fes_mj.statics.equilibrium import crank_moment
 from fes_mj.statics.extrapolation import beyond
-from fes_mj.statics.inverse_dynamics import crank_moment
 from fes_mj.statics.joint_forces import JointForces, peaks
 from fes_mj.statics.turn import QuasiStatic, quasi_static
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fes_mj.common.arrays import FloatArray
+from fes_mj.common.errors import InputError
 
 Scalar = TypeVar("Scalar", bound=np.generic)
 
@@ -28,7 +29,14 @@ class Leg:
 
 ONE_LEG = (Leg("", 0.0, 0.0),)
 TWO_LEGS = (Leg("right_", 0.0, 0.17), Leg("left_", math.pi, -0.17))
-LEGS = {1: ONE_LEG, 2: TWO_LEGS}
+
+
+class _Legs(dict[int, tuple[Leg, ...]]):
+    def __missing__(self, count: int) -> tuple[Leg, ...]:
+        raise InputError(f"legs is {count!r}; a rider pedals with 1 or 2")
+
+
+LEGS = _Legs({1: ONE_LEG, 2: TWO_LEGS})
 
 
 def delayed(curve: NDArray[Scalar], lag: float) -> NDArray[Scalar]:

@@ -10,7 +10,7 @@ from fes_mj.linkage.kinematics import Jet, Motion
 from fes_mj.linkage.segments import GRAVITY, inertias
 
 
-class Load(NamedTuple):
+class BodyLoad(NamedTuple):
     """A force (N, complex) at a point of a body, and a couple (N m) on that body, over crank angle."""
 
     force: ComplexArray
@@ -18,12 +18,14 @@ class Load(NamedTuple):
     couple: FloatArray
 
 
-def body_loads(motion: Motion, cadence: float, mass_scale: float = 1.0, gravity: float = GRAVITY) -> dict[str, Load]:
+def body_loads(
+    motion: Motion, cadence: float, mass_scale: float = 1.0, gravity: float = GRAVITY
+) -> dict[str, BodyLoad]:
     """Weight and inertia of every moving body at constant crank speed (rad/s), as loads on it."""
     loads = {}
     for body, inertia in inertias(motion.design).items():
         centre = motion.body_point(body, inertia.centre)
-        loads[body] = Load(
+        loads[body] = BodyLoad(
             force=-mass_scale * inertia.mass * (cadence**2 * centre.second + 1j * gravity),
             point=centre,
             couple=-mass_scale * inertia.moment * cadence**2 * motion.rotation[body].second,

@@ -14,7 +14,7 @@ from fes_mj.common.units import RPM, turns_per_second
 from fes_mj.common.writing import csv_text
 from fes_mj.linkage import kinematics
 from fes_mj.moments.fourier import fit, fourier, gaps
-from fes_mj.moments.joint_moments import COLUMNS, GROUPS, TURN_POINTS, JointMoments, Misreading
+from fes_mj.moments.joint_moments import COLUMNS, GROUPS, MEASURED_POINTS, JointMoments, Misreading
 from fes_mj.moments.measurement_file import Description
 from fes_mj.moments.misreading import odd_angles, odd_moments
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE, ReferenceTricycle
@@ -47,7 +47,7 @@ class Measurement:
         reference, covariance = self.moments.measured_on, self.moments.covariance
         if covariance is None:
             return None
-        motion = kinematics.solve(reference.design, np.linspace(0, 2 * np.pi, TURN_POINTS, endpoint=False))
+        motion = kinematics.solve(reference.design, np.linspace(0, 2 * np.pi, MEASURED_POINTS, endpoint=False))
         return standard_deviation(power_weights(motion, reference.cadence, reference), covariance)
 
     def summary(self) -> dict[str, Any]:

@@ -16,7 +16,7 @@ from fes_mj.moments.torque_velocity import TorqueVelocity
 GROUPS = ("p1p2", "p1p3")
 COLUMNS = ("crank_angle_deg", "knee_Nm", "hip_Nm")
 _NEGLIGIBLE = 1e-9  # part of the largest variance of moments; directions below it are rounding
-TURN_POINTS = 720  # of sums over the measured turn: exact for the products of harmonics that matter
+MEASURED_POINTS = 720  # of sums over the measured turn: exact for the products of harmonics that matter
 
 
 class Misreading(NamedTuple):
@@ -104,6 +104,6 @@ class JointMoments:
     @cached_property
     def power_mean(self) -> PerJoint[float]:
         """Mean power of each joint in the tricycle of the measurement, at its cadence, W."""
-        angle = np.linspace(0, 2 * np.pi, TURN_POINTS, endpoint=False)
+        angle = np.linspace(0, 2 * np.pi, MEASURED_POINTS, endpoint=False)
         moment, rate = self.at(angle), self.measured_on.joint_rates(angle)
         return PerJoint.of(lambda joint: float(np.mean(moment[joint] * rate[joint])) * self.measured_on.cadence)

@@ -9,7 +9,7 @@ import numpy as np
 
 from fes_mj.common.arrays import FloatArray
 from fes_mj.common.errors import AssemblyError, InputError
-from fes_mj.common.reading import Section, Table, read_toml
+from fes_mj.common.reading import Section, TextTable, read_toml
 from fes_mj.common.units import RPM
 from fes_mj.linkage import kinematics
 from fes_mj.linkage.design_file import read_rider, read_values
@@ -135,7 +135,7 @@ class Description:
         """The two columns that were measured."""
         return self.pedal_force or [self.columns[joint] for joint in JOINTS]
 
-    def _values(self, table: Table) -> FloatArray:
+    def _values(self, table: TextTable) -> FloatArray:
         """Knee and hip moment, N m, extension positive, or the two components of the pedal force, N; shape (2, n)."""
         values = np.stack([bounded(table, column) for column in self._measured])
         return values if self.pedal_force else self.scale * np.array([*self.sign])[:, None] * values
@@ -147,7 +147,7 @@ class Description:
         motion = kinematics.solve(self.measured_on.design, angle + self.measured_on.top_dead_centre)
         return Turn(angle, *leg_moments(motion, self.measured_on.cadence, values[0] + 1j * values[1]))
 
-    def _angle_unit(self, table: Table) -> str:
+    def _angle_unit(self, table: TextTable) -> str:
         """Unit of the crank angle: as declared, otherwise as the header of an OpenSim file says, otherwise deg."""
         header = says_radians(table)
         said = {None: "deg", True: "rad", False: "deg"}[header]

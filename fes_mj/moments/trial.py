@@ -8,7 +8,7 @@ import numpy as np
 
 from fes_mj.common.arrays import FloatArray, IntArray
 from fes_mj.common.errors import InputError
-from fes_mj.common.reading import Table, read_table
+from fes_mj.common.reading import TextTable, read_table
 
 WHAT = "joint moments"
 OPENSIM = (".sto", ".mot")
@@ -27,18 +27,18 @@ class Turn(NamedTuple):
     hip: FloatArray
 
 
-def load_table(path: Path, what: str) -> Table:
+def load_table(path: Path, what: str) -> TextTable:
     """A CSV or an OpenSim file. Raises InputError as inputs.read_table."""
     opensim = path.suffix.lower() in OPENSIM
     return read_table(path, what, after="endheader" if opensim else "", commas=not opensim)
 
 
-def is_trial(table: Table) -> bool:
+def is_trial(table: TextTable) -> bool:
     """Whether a table is a series over time."""
     return table.path.suffix.lower() in OPENSIM or "time" in table.header
 
 
-def bounded(table: Table, column: str, angle: bool = False) -> FloatArray:
+def bounded(table: TextTable, column: str, angle: bool = False) -> FloatArray:
     """A column of moments (N m or N m/kg) or crank angles, every value of which a leg or a crank can have."""
     limit, values = LARGEST_ANGLE if angle else LARGEST_MOMENT, table.column(column)
     for line, value in zip(table.lines, values.tolist(), strict=True):
@@ -49,13 +49,13 @@ def bounded(table: Table, column: str, angle: bool = False) -> FloatArray:
     return values
 
 
-def says_radians(table: Table) -> bool | None:
+def says_radians(table: TextTable) -> bool | None:
     """Whether an OpenSim header says that angles are in radians; None if it does not say."""
     found = re.search(r"^\s*inDegrees\s*=\s*(yes|no)\s*$", table.preamble, re.IGNORECASE | re.MULTILINE)
     return found.group(1).lower() == "no" if found else None
 
 
-def times(table: Table) -> FloatArray:
+def times(table: TextTable) -> FloatArray:
     """The column "time", s, shape (n,). Raises InputError unless it grows."""
     path, time = table.path, table.column("time")
     if len(time) < 2:

@@ -15,7 +15,7 @@ from fes_mj.moments.torque_map import torque_map
 from fes_mj.riding.ride import Ride, Road
 from fes_mj.riding.ripple import even_ripple
 from fes_mj.statics.characteristics import energy_fluctuation
-from fes_mj.statics.turn import virtual_work
+from fes_mj.statics.equilibrium import virtual_work
 
 
 def fluctuation(design: Design, moments: JointMoments) -> FloatArray:

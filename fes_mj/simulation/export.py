@@ -18,7 +18,7 @@ from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.torque_map import torque_map
 from fes_mj.simulation.appearance import FIELD_OF_VIEW, Spec, framing, lowest_point
 from fes_mj.simulation.road_mjcf import ROAD
-from fes_mj.statics.inverse_dynamics import crank_moment
+from fes_mj.statics.equilibrium import crank_moment
 
 SIDECAR_ROWS = 720  # a turn: every half degree
 CAMERA_SIDE = (-0.55, 0.80, 0.25)  # of the oblique camera: from the front right, a little above

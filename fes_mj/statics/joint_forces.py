@@ -10,7 +10,8 @@ from fes_mj.common.arrays import ComplexArray
 from fes_mj.linkage.loads import body_loads
 from fes_mj.linkage.riders import leg_mass_after_injury
 from fes_mj.linkage.segments import GRAVITY
-from fes_mj.statics.turn import QuasiStatic, equilibrium
+from fes_mj.statics.equilibrium import equilibrium
+from fes_mj.statics.turn import QuasiStatic
 
 # Stimulating the quadriceps of paralysed, seated legs: largest load on the distal femur, body weights (PMC3324830).
 STIMULATED_SHEAR, STIMULATED_COMPRESSION = 2.15, 1.39

@@ -1,7 +1,6 @@
-"""Quasi-static crank moment and joint reactions: free-body equilibrium, and virtual work beside it."""
+"""One turn of the massless model: quasi-static crank moment and reactions, mean power and how sure it is."""
 
 import math
-from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -12,15 +11,15 @@ from fes_mj.common.arrays import ComplexArray, FloatArray
 from fes_mj.common.errors import InputError
 from fes_mj.common.units import RPM
 from fes_mj.linkage import kinematics
-from fes_mj.linkage.design import BODIES, Design
+from fes_mj.linkage.design import Design
 from fes_mj.linkage.joints import PerJoint
 from fes_mj.linkage.kinematics import Motion
-from fes_mj.linkage.loads import Load
 from fes_mj.linkage.turning import CRANK_ZERO, turning
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.torque_map import TorqueMap, torque_map
 from fes_mj.moments.uncertainty import power_weights, standard_deviation
 from fes_mj.statics.characteristics import motion_characteristics, power_characteristics
+from fes_mj.statics.equilibrium import equilibrium
 from fes_mj.statics.extrapolation import NO_MORE, Extrapolation, extrapolation, turning_in_range
 
 # Trapezium rule over a turn; against 36,000 points the mean power changes by less than 1e-5 of itself.
@@ -178,66 +177,3 @@ def ratio_sd(one: QuasiStatic, other: QuasiStatic) -> float | None:
     """Standard deviation of one's mean power per the other's, to first order; otherwise as difference_sd."""
     deviation = difference_sd(one, other, one.power_mean / other.power_mean)
     return None if deviation is None else deviation / abs(other.power_mean)
-
-
-def virtual_work(
-    motion: Motion, joint_moment: PerJoint[FloatArray], loads: Mapping[str, Load] | None = None
-) -> FloatArray:
-    """Crank moment, N m, by which moments and loads do no net virtual work: exact for any single-crank linkage."""
-    rate = motion.joint_rate
-    moment = joint_moment.knee * rate.knee + joint_moment.hip * rate.hip
-    for body, load in (loads or {}).items():
-        moment = moment + (np.conj(load.force) * load.point.first).real + load.couple * motion.rotation[body].first
-    return moment
-
-
-def joint_couples(joint_moment: PerJoint[FloatArray]) -> dict[str, FloatArray]:
-    """Couple of the joint moments on each body, N m: extension turns the thigh forwards, the shank back against it."""
-    return {"thigh": joint_moment.hip + joint_moment.knee, "shank": -joint_moment.knee}
-
-
-def moment_arm(motion: Motion, body: str, point: str) -> ComplexArray:
-    """From a body's origin to one of its points, m."""
-    return motion.points[point].value - motion.points[BODIES[body][0]].value
-
-
-def equilibrium(
-    motion: Motion,
-    joint_moment: PerJoint[FloatArray],
-    loads: Mapping[str, Load] | None = None,
-    *,
-    couples: Callable[[PerJoint[FloatArray]], dict[str, FloatArray]] = joint_couples,
-    arm: Callable[[Motion, str, str], ComplexArray] = moment_arm,
-) -> tuple[FloatArray, dict[str, ComplexArray]]:
-    """Crank moment and joint reactions from three equilibrium equations a body, solved at every crank angle.
-
-    The equations are those of the free-body diagrams of the paper (Eq. 4, 9, 14), with its misprints corrected and the
-    bearings kept as unknowns; couples and arm are the two places of the misprints. Returns as in QuasiStatic.
-    """
-    architecture = motion.design.linkage.architecture
-    bodies, joints = architecture.bodies, architecture.joints
-    size, count = 3 * len(bodies), np.size(motion.crank_angle)
-    matrix, right = np.zeros((count, size, size)), np.zeros((count, size))
-    couple = couples(joint_moment)
-    for row, body in enumerate(bodies):
-        for column, (point, pair) in enumerate(joints.items()):
-            if body in pair:
-                sign = 1.0 if pair[1] == body else -1.0
-                lever = arm(motion, body, point)
-                matrix[:, 3 * row, 2 * column] = sign
-                matrix[:, 3 * row + 1, 2 * column + 1] = sign
-                matrix[:, 3 * row + 2, 2 * column] = -sign * lever.imag
-                matrix[:, 3 * row + 2, 2 * column + 1] = sign * lever.real
-        if body in couple:
-            right[:, 3 * row + 2] = -couple[body]
-        if loads:
-            load, origin = loads[body], motion.points[BODIES[body][0]].value
-            right[:, 3 * row] -= load.force.real
-            right[:, 3 * row + 1] -= load.force.imag
-            right[:, 3 * row + 2] -= load.couple + (np.conj(load.point.value - origin) * load.force).imag
-    matrix[:, 3 * bodies.index("crank") + 2, -1] = -1.0  # the load's moment on the crank is minus ours
-    solution: FloatArray = np.linalg.solve(matrix, right[..., None])[..., 0].astype(float)
-    reactions = {
-        point: solution[:, 2 * column] + 1j * solution[:, 2 * column + 1] for column, point in enumerate(joints)
-    }
-    return solution[:, -1], reactions

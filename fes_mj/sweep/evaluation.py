@@ -16,7 +16,7 @@ from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.torque_map import torque_map
 from fes_mj.statics.characteristics import motion_characteristics, power_characteristics
 from fes_mj.statics.cycles import Cycles, cycles
-from fes_mj.statics.turn import virtual_work
+from fes_mj.statics.equilibrium import virtual_work
 from fes_mj.statics.work_table import WorkTable, uncertain_table
 from fes_mj.sweep.study import NAMES, Study
 

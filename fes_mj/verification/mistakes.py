@@ -22,7 +22,7 @@ from fes_mj.linkage.variables import ALL
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.moments.torque_map import GRID, TorqueMap
 from fes_mj.simulation.mjcf import SERVO, SERVO_GAIN
-from fes_mj.statics.turn import equilibrium, joint_couples, moment_arm
+from fes_mj.statics.equilibrium import equilibrium, joint_couples, moment_arm
 from fes_mj.verification.faults import Fault
 
 Steps: TypeAlias = dict[str, Any]

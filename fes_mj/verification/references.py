@@ -15,7 +15,7 @@ from fes_mj.crosscheck.turn_case import Case
 from fes_mj.linkage.joints import PerJoint
 from fes_mj.linkage.kinematics import Motion
 from fes_mj.simulation.mjcf import joint_motion
-from fes_mj.statics.turn import virtual_work
+from fes_mj.statics.equilibrium import virtual_work
 
 Curves: TypeAlias = dict[str, FloatArray]  # method -> crank moment, N m, shape (angles,)
 POINTS = 360

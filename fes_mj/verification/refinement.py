@@ -13,7 +13,7 @@ from fes_mj.crosscheck.turn_case import Case
 from fes_mj.simulation.bench import Simulation
 from fes_mj.simulation.mjcf import LOOP_SOLREF
 from fes_mj.simulation.time_step import steps_per_turn
-from fes_mj.statics.turn import virtual_work
+from fes_mj.statics.equilibrium import virtual_work
 
 STEP_FACTORS = (1, 2, 4)  # steps a turn, times the recommended number
 LOOP_TIMES = (8e-3, 4e-3, 2e-3)  # s, soft enough for the softness to dominate the loop gap

@@ -17,7 +17,7 @@ from fes_mj.moments.drive import POINTS, drive
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.samples import moments_of
 from fes_mj.moments.torque_velocity import TorqueVelocity, load_torque_velocity
-from fes_mj.statics.inverse_dynamics import crank_moment
+from fes_mj.statics.equilibrium import crank_moment
 from fes_mj.statics.turn import quasi_static
 
 COUNT = 40

@@ -8,6 +8,7 @@ import pytest
 from fes_mj.common.errors import InputError
 from fes_mj.linkage.design import SEXES, Linkage, Rider
 from fes_mj.linkage.design_file import load_design
+from fes_mj.linkage.legs import LEGS
 from fes_mj.linkage.segments import DE_LEVA, FOOT_LENGTH
 from fes_mj.linkage.variables import replaced
 
@@ -19,6 +20,8 @@ def test_words_that_nothing_is_known_of_are_refused_where_they_are_said() -> Non
         Linkage("crt", -0.7 - 0.3j, 0.15, 0.07, branch="up")
     with pytest.raises(InputError, match="sex is 'x'; it must be one of male, female"):
         Rider(sex="x")
+    with pytest.raises(InputError, match="legs is 3; a rider pedals with 1 or 2"):
+        _ = LEGS[3]
     assert (*DE_LEVA,) == (*FOOT_LENGTH,) == SEXES
 
 

@@ -19,7 +19,7 @@ from fes_mj.riding.leg_table import LegTable, leg_table
 from fes_mj.riding.ride import Ride, Road, balancing_slope
 from fes_mj.riding.ripple import steady_ripple
 from fes_mj.riding.trace import DEFAULT_STEPS, Steps, ride as solved
-from fes_mj.statics.inverse_dynamics import crank_moment
+from fes_mj.statics.equilibrium import crank_moment
 
 NOTHING = Road(rolling_resistance=0.0, drag_area=0.0)
 

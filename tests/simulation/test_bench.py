@@ -30,7 +30,7 @@ def test_constraint_forces_are_the_reactions_of_the_massive_equilibrium(
     """
     from fes_mj.linkage.kinematics import solve
     from fes_mj.linkage.loads import body_loads
-    from fes_mj.statics.turn import equilibrium
+    from fes_mj.statics.equilibrium import equilibrium
 
     run = fes_mj.simulate(design, smooth_moments)
     motion = solve(design, run.crank_angle)

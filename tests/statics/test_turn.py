@@ -9,7 +9,7 @@ from fes_mj.linkage.design import Design
 from fes_mj.linkage.design_file import load_design
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
-from fes_mj.statics.turn import equilibrium, virtual_work
+from fes_mj.statics.equilibrium import equilibrium, virtual_work
 
 
 def test_equilibrium_is_virtual_work(design: Design, moments: JointMoments) -> None:

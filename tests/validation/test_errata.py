@@ -22,8 +22,7 @@ from fes_mj.linkage.turning import turning
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.paper.identification import identify
 from fes_mj.paper.printed import SIX_BARS, table1
-from fes_mj.statics.inverse_dynamics import crank_moment
-from fes_mj.statics.turn import equilibrium, virtual_work
+from fes_mj.statics.equilibrium import crank_moment, equilibrium, virtual_work
 
 _TURN = np.radians(np.arange(3.0, 363.0, 5.0))
 _KNEE, _HIP = 9 + 11 * np.cos(_TURN - 1.2), 7 * np.sin(_TURN + 0.4)  # any moments will do

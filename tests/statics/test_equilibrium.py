@@ -8,8 +8,8 @@ from fes_mj.linkage.design import Design
 from fes_mj.linkage.segments import GRAVITY, inertias
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.torque_map import torque_map
-from fes_mj.statics.inverse_dynamics import crank_moment
-from fes_mj.statics.turn import quasi_static, virtual_work
+from fes_mj.statics.equilibrium import crank_moment, virtual_work
+from fes_mj.statics.turn import quasi_static
 
 
 def test_power_balance_with_spectral_energy(design: Design, smooth_moments: JointMoments) -> None:
