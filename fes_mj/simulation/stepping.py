@@ -134,10 +134,8 @@ def run_loop(model: mujoco.MjModel, loop: Loop, steps: int, pre_roll: int = PRE_
 
 
 def energy(model: mujoco.MjModel, data: mujoco.MjData) -> tuple[float, float]:
-    """Potential and kinetic energy of the current state, J; the state itself is left alone."""
-    probe = mujoco.MjData(model)
-    probe.qpos, probe.qvel = data.qpos, data.qvel
-    mujoco.mj_forward(model, probe)
-    mujoco.mj_energyPos(model, probe)
-    mujoco.mj_energyVel(model, probe)
-    return float(probe.energy[0]), float(probe.energy[1])
+    """Potential and kinetic energy of the current state, J; state and accelerations are left alone."""
+    mujoco.mj_fwdPosition(model, data)
+    mujoco.mj_energyPos(model, data)
+    mujoco.mj_energyVel(model, data)
+    return float(data.energy[0]), float(data.energy[1])

@@ -22,9 +22,9 @@ SHARE = 0.5
 # An eighth of a degree: the designs of the paper are then within 0.007 W rms, and a plain mj_step, as other tools take
 # with an exported model, within 0.06 W.
 FEWEST_STEPS = 2880
-# Most designs are content with the fewest steps by far: if half a degree between the angles shows no error above this
-# share of what is allowed, 0.05 deg do not show one above all of it.
-GLANCE, WELL_WITHIN = ANGLES[::10], 0.25
+# Most designs are content with the fewest steps by far: if a degree between the angles shows no error above this share
+# of what is allowed, 0.05 deg do not show one above all of it.
+GLANCE, WELL_WITHIN = ANGLES[::20], 0.25
 LONGEST_TIMESTEP = 0.02  # s, of those that a user asks for
 # All turns together. With the near-massless run beside it that is a gigabyte and half a minute.
 MOST_STEPS = 1_000_000
