@@ -4,12 +4,23 @@ from __future__ import annotations
 
 from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Group, Parameter
 
 from fes_mj.cli.fit_options import RiderOptions, SeatOptions
-from fes_mj.cli.options import DesignName, MomentsOptions, Out, PeopleOfEachSex, PrintOptions, Seed, crank_speed, needs
+from fes_mj.cli.options import (
+    Cadence,
+    DesignName,
+    Dims,
+    MomentsOptions,
+    Out,
+    PeopleOfEachSex,
+    PrintOptions,
+    Seed,
+    crank_speed,
+    needs,
+)
 from fes_mj.cli.tables import or_dash, print_notes, span, with_error
 from fes_mj.common.console import conclude, print_table, progress_bar, say
 from fes_mj.common.errors import InputError, require_extra
@@ -34,7 +45,8 @@ def fit(
     seat: SeatOptions = _SEAT,
     moments: MomentsOptions = _MOMENTS,
     options: PrintOptions = _PRINT,
-    dims: Literal["identified", "printed"] = "identified",
+    cadence: Cadence | None = None,
+    dims: Dims = "identified",
     out: Out | None = None,
     population: Annotated[bool, Parameter(group=_POPULATION, negative="")] = False,
     samples: Annotated[PeopleOfEachSex, Parameter(group=_POPULATION)] = SAMPLES,
@@ -47,8 +59,8 @@ def fit(
 
     Parameters
     ----------
-    dims
-        Dimensions of one of the paper's designs: as identified, or as the paper prints them.
+    cadence
+        Crank speed in rpm for which the seat is sought; by default the one at which the tricycle does 5.71 km/h.
     out
         The design file to write (.toml): the rider, and the seat where it was moved to.
     population
@@ -61,8 +73,9 @@ def fit(
         A picture (.png) of the power over thigh and shank.
     """
     loaded, joint_moments, limits = load_design(design, dims), moments.load_moments(), seat.load()
-    inputs = moments.inputs(design)
-    crank_speed(None, loaded)
+    inputs, ratio = moments.inputs(design), loaded.linkage.gear_ratio
+    # with another gear ratio the crank has the cadence at the speed of the tricycle
+    loaded = loaded.with_linkage(gear_ratio=ratio * crank_speed(cadence, loaded) / loaded.linkage.cadence)
     if population:
         for name, value in {"out": out, **vars(who)}.items():
             if value is not None:
@@ -84,7 +97,7 @@ def fit(
     result = fit_seat(loaded, who.load(loaded), joint_moments, limits)
     written = out if result.fits else None
     if written:
-        write_text(written, design_toml(result.design, _origin(result)))
+        write_text(written, design_toml(result.design.with_linkage(gear_ratio=ratio), _origin(result)))
     options.show(
         lambda: result.summary() | {"design_file": written and str(written)},
         lambda: _print(result),

@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable
 from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Literal
 
-from cyclopts import Parameter
-
+from fes_mj.cli.options import Out
 from fes_mj.cli.process import interruption_code
 from fes_mj.cli.search_options import SearchOptions, shell_word
 from fes_mj.common.console import errors, print_table, progress_bar, say
 from fes_mj.common.text import printable
-from fes_mj.common.writing import json_text, require_replaceable, require_writable, write_files, write_text
+from fes_mj.common.writing import require_replaceable, require_writable, write_files, write_text
 from fes_mj.linkage.design_file import design_toml, load_design
 
 if TYPE_CHECKING:
@@ -31,7 +29,7 @@ def optimize(
     /,
     *,
     options: SearchOptions = _DEFAULTS,
-    out: Annotated[Path | None, Parameter(name=["--out", "-o"])] = None,
+    out: Out | None = None,
     report: Path | None = None,
 ) -> int:
     """Find the linkage with the most mean crank power; exit code 1 if its simulation disagrees with statics.
@@ -96,25 +94,24 @@ def optimize(
         return code
     if findings:
         findings.remove()
-    if options.json:
-        sys.stdout.write(json_text(winner.summary(optimum) | {"command": command, "design_file": None, **files}))
-    elif not options.quiet:
-        _print(winner, optimum)
-        if report:
-            say(f"report: {report}")
+    options.show(
+        lambda: winner.summary(optimum) | {"command": command, "design_file": None, **files},
+        lambda: _print(winner, optimum),
+        report=report,
+    )
     return 0 if winner.case.agrees else 1
 
 
 def _check_files(out: Path | None, report: Path | None, options: SearchOptions) -> None:
     """Refuse files that could not or must not be written, before anything runs."""
-    if out:
-        require_writable(out, "the design", ".toml", options.inputs())
-        for key, path in _beside(out, options).items():
-            require_replaceable([path], f"the {key.partition('_')[0]}", options.inputs())
+    inputs = options.inputs()
+    require_writable(out, "the design", ".toml", inputs)
+    for key, path in _beside(out, options).items() if out else ():
+        require_replaceable([path], f"the {key.partition('_')[0]}", inputs)
+    require_writable(report, "the page", ".html", inputs)
     if report:
         from fes_mj.viewing.pages import require_page_packages
 
-        require_writable(report, "the page", ".html", options.inputs())
         require_page_packages()
 
 
@@ -144,8 +141,7 @@ def _write(optimum: Optimum, origin: str, findings: Findings, options: SearchOpt
             findings.write(text(), paths[key])
         else:
             write_files({paths[key]: text()}, unnamed=[paths[key]])
-        if not options.silent:
-            say(f"{key.replace('_', ' ')}: {paths[key]}")
+        options.name_files(**{key: paths[key]})
     return {key: str(paths[key]) for key in texts}
 
 

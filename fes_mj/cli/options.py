@@ -41,6 +41,10 @@ Flag: TypeAlias = Annotated[bool, Parameter(negative="")]
 Out: TypeAlias = Annotated[Path, Parameter(name=["--out", "-o"])]
 Cadence: TypeAlias = Annotated[float, Parameter(validator=bounds("cadence_rpm"))]
 Legs: TypeAlias = Literal[1, 2]
+Dims: TypeAlias = Annotated[
+    Literal["identified", "printed"],
+    Parameter(help="Dimensions of one of the paper's designs: as identified, or as the paper prints them."),
+]
 Lag: TypeAlias = Annotated[float, Parameter(validator=Number(gte=0, lte=1))]
 Seed: TypeAlias = Annotated[int, Parameter(validator=Number(gte=0))]
 Jobs: TypeAlias = Annotated[int, Parameter(validator=Number(gte=1))]
@@ -138,15 +142,13 @@ class LoadOptions(MomentsOptions):
         Crank speed in rpm; by default the one at which the tricycle does 5.71 km/h.
     legs
         One leg, or two half a turn apart on the same crank.
-    dims
-        Dimensions of one of the paper's designs: as identified, or as the paper prints them.
     torque_velocity
         Let joint moments change with joint speed, by Hill's relation; by default they do not, as in the paper.
     """
 
     cadence: Cadence | None = None
     legs: Legs = 1
-    dims: Literal["identified", "printed"] = "identified"
+    dims: Dims = "identified"
     torque_velocity: Literal["hill"] | None = None
 
     def load(self, design: str) -> Loaded:

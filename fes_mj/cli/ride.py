@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from cyclopts import Group, Parameter
 from cyclopts.validators import Number, mutually_exclusive
 
-from fes_mj.cli.options import DesignName, Flag, Lag, MomentsOptions, Out, PrintOptions, require_lag
+from fes_mj.cli.options import DesignName, Dims, Flag, Lag, MomentsOptions, Out, PrintOptions, require_lag
 from fes_mj.cli.tables import conclude_checks, or_dash, print_checks, what_moves
 from fes_mj.common.console import print_table, say
 from fes_mj.common.errors import require_extra
@@ -61,8 +61,6 @@ class RideOptions(PrintOptions, MomentsOptions):
         Coefficient of rolling resistance.
     drag_area
         Drag coefficient times frontal area, in m2.
-    dims
-        Dimensions of one of the paper's designs: as identified, or as the paper prints them.
     """
 
     transmission: Annotated[Literal["freewheel", "fixed"], Parameter(group=_TRICYCLE)] = "freewheel"
@@ -76,7 +74,7 @@ class RideOptions(PrintOptions, MomentsOptions):
     rolling_mass: Annotated[float, Parameter(group=_TRICYCLE, validator=Number(gte=0, lte=50))] = 3.0
     crr: Annotated[float, Parameter(group=_TRICYCLE, validator=Number(gte=0, lte=0.5))] = 0.008
     drag_area: Annotated[float, Parameter(group=_TRICYCLE, validator=Number(gte=0, lte=10))] = 0.4
-    dims: Literal["identified", "printed"] = "identified"
+    dims: Dims = "identified"
 
     def load(self, name: str) -> Ride:
         """Load everything the options name. Raises InputError for what cannot be used."""

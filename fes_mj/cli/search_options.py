@@ -8,16 +8,17 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from cyclopts import Parameter
+from cyclopts import Group, Parameter
 from cyclopts.validators import Number
 
-from fes_mj.cli.options import Jobs, MomentsOptions, PeopleOfEachSex, PrintOptions, Seed
+from fes_mj.cli.options import Flag, Jobs, MomentsOptions, PeopleOfEachSex, PrintOptions, Seed, needs
 from fes_mj.common.errors import InputError, require_extra
 from fes_mj.common.provenance import provenance
 from fes_mj.linkage.riders import SAMPLES
 
 Methods = Literal["differential-evolution", "cma-es", "nsga-ii", "random-pursuit"]
 _Speed = Annotated[float, Parameter(validator=Number(gt=0))]
+_PEOPLE = Group("People", validator=needs("--riders"))
 _PACKAGES = {"cma-es": "cma", "nsga-ii": "pymoo"}
 _WITHOUT_EFFECT = ("json", "quiet", "jobs", "cluster")  # on what is found
 
@@ -53,9 +54,9 @@ class SearchOptions(PrintOptions, MomentsOptions):
         Whose power counts: the design's own rider's, or that of a sample of people, each with the seat moved within
         the limits of `fes_mj fit`: in the mean (population), or what 9 of 10 have (population-p10).
     samples
-        With --riders population: people of each sex (default 1000).
+        People of each sex.
     sample_seed
-        With --riders population: of the sample's random numbers (default 0).
+        Of the sample's random numbers.
     smooth
         With nsga-ii: also the least coefficient of fluctuation.
     problem
@@ -76,10 +77,10 @@ class SearchOptions(PrintOptions, MomentsOptions):
     hip_speed_limit: _Speed | None = None
     ripple_limit: Annotated[float | None, Parameter(validator=Number(gt=0, lte=200))] = None
     caution: Annotated[float, Parameter(validator=Number(gte=0, lte=10))] = 0.0
-    riders: Literal["one", "population", "population-p10"] = "one"
-    samples: PeopleOfEachSex | None = None
-    sample_seed: Seed | None = None
-    smooth: Annotated[bool, Parameter(negative="")] = False
+    riders: Annotated[Literal["one", "population", "population-p10"], Parameter(group=_PEOPLE)] = "one"
+    samples: Annotated[PeopleOfEachSex, Parameter(group=_PEOPLE)] = SAMPLES
+    sample_seed: Annotated[Seed, Parameter(group=_PEOPLE)] = 0
+    smooth: Flag = False
     problem: Path | None = None
     jobs: Jobs = 1
     cluster: str | None = None
@@ -90,27 +91,18 @@ class SearchOptions(PrintOptions, MomentsOptions):
             raise InputError(
                 "--caution needs the error bars of one group's recovered moments: not with --moments or nsga-ii"
             )
-        self._check_people()
+        if self.riders != "one" and (self.caution or self.method == "nsga-ii"):
+            raise InputError(f"--riders {self.riders} is an objective of its own: not with --caution or nsga-ii")
         if self.method in _PACKAGES:
             require_extra("optimize", _PACKAGES[self.method])
         if self.smooth and self.method != "nsga-ii":
             raise InputError("--smooth is an objective of its own: it needs --method nsga-ii")
-
-    def _check_people(self) -> None:
-        if self.riders == "one":
-            for name, value in {"--samples": self.samples, "--sample-seed": self.sample_seed}.items():
-                if value is not None:
-                    raise InputError(f"{name} is of a population; it needs --riders population")
-            return
-        if self.caution or self.method == "nsga-ii":
-            raise InputError(f"--riders {self.riders} is an objective of its own: not with --caution or nsga-ii")
 
     def problem_options(self) -> dict[str, Any]:
         """What they ask of the problem, as make_problem takes it."""
         from fes_mj.optimization.limits import DEFAULT
         from fes_mj.optimization.people import ONE_RIDER, sampled
 
-        size, seed = self.samples or SAMPLES, self.sample_seed or 0
         return {
             "compared_with": self.speeds_of,
             "start": self.start,
@@ -119,7 +111,7 @@ class SearchOptions(PrintOptions, MomentsOptions):
             "hip_speed": self.hip_speed_limit,
             "caution": self.caution,
             "ripple": None if self.ripple_limit is None else self.ripple_limit / 100,
-            "people": ONE_RIDER if self.riders == "one" else sampled(self.riders, size, seed),
+            "people": ONE_RIDER if self.riders == "one" else sampled(self.riders, self.samples, self.sample_seed),
         }
 
     def inputs(self, *designs: str) -> list[Path]:

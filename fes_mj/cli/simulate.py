@@ -10,20 +10,8 @@ from cyclopts import Group, Parameter
 from cyclopts.validators import Number
 
 from fes_mj.budget.budget import error_budget, summary
+from fes_mj.cli import tables
 from fes_mj.cli.options import DesignName, Flag, Out, RunOptions, needs
-from fes_mj.cli.tables import (
-    conclude_checks,
-    force_rows,
-    heading,
-    power_rows,
-    print_budget,
-    print_checks,
-    print_forces,
-    print_notes,
-    span,
-    turn_rows,
-    with_error,
-)
 from fes_mj.common.console import print_table
 from fes_mj.common.errors import InputError
 from fes_mj.common.units import RPM
@@ -114,32 +102,32 @@ def _print(case: Case, verbose: bool) -> None:
 
     run = case.simulation
     dynamic = (
-        with_error(run.power_mean, case.power_sd),  # the mean is the same functional of the moments
+        tables.with_error(run.power_mean, case.power_sd),  # the mean is the same functional of the moments
         f"{2 * np.pi * run.power_mean / run.cadence:.3f}",
-        *(span(ends) for ends in run.joint_range_deg),
+        *(tables.span(ends) for ends in run.joint_range_deg),
     )
     sides = ("",) if len(case.statics) == 1 else (", right", ", left")
-    names = [name for name, _ in power_rows(case.static)]
-    columns = [[value for _, value in power_rows(turn)] for turn in case.statics]
+    names = [name for name, _ in tables.power_rows(case.static)]
+    columns = [[value for _, value in tables.power_rows(turn)] for turn in case.statics]
     print_table(
-        heading(case.static, len(run.legs)),
+        tables.heading(case.static, len(run.legs)),
         ("", *(f"quasi-static{side}" for side in sides), "dynamic"),
         [*zip(names, *columns, dynamic, strict=True)],
     )
-    print_budget(*case.statics)
-    quasi, measured = (turn_rows(content) for content in (case.static.summary(), turn_summary(case)))
+    tables.print_budget(*case.statics)
+    quasi, measured = (tables.turn_rows(content) for content in (case.static.summary(), turn_summary(case)))
     turn = [(name, value, other) for (name, value), (_, other) in zip(quasi, measured, strict=True)]
     together = "dynamic" if len(run.legs) == 1 else "dynamic, both legs"
     print_table("The turn", ("", f"quasi-static{sides[0]}", together), turn)
-    print_forces(case.joint_forces)
-    print_checks("Checks", case.checks)
+    tables.print_forces(case.joint_forces)
+    tables.print_checks("Checks", case.checks)
     if verbose:
         terms = [(name.replace("_", " "), f"{value:.5f}") for name, value in run.energy.as_json().items()]
         print_table("Energy over the measured turns", ("term", "J"), terms)
-        print_table("Constraint forces", ("loop", "mean N", "largest N"), force_rows(run.loop_force))
+        print_table("Constraint forces", ("loop", "mean N", "largest N"), tables.force_rows(run.loop_force))
     for quasi_static in case.statics:
-        print_notes(quasi_static, f"{quasi_static.moments.name}: " if len(case.statics) > 1 else "")
-    conclude_checks("Dynamic and static", case.checks, f": mean power differs by {case.difference_text}")
+        tables.print_notes(quasi_static, f"{quasi_static.moments.name}: " if len(case.statics) > 1 else "")
+    tables.conclude_checks("Dynamic and static", case.checks, f": mean power differs by {case.difference_text}")
 
 
 def _write(case: Case, paths: dict[str, Path]) -> None:

@@ -4,18 +4,8 @@ from typing import Any
 
 import numpy as np
 
+from fes_mj.cli import tables
 from fes_mj.cli.options import DesignName, Flag, Loaded, RunOptions
-from fes_mj.cli.tables import (
-    force_rows,
-    heading,
-    or_dash,
-    power_rows,
-    print_budget,
-    print_forces,
-    print_notes,
-    turn_rows,
-    with_error,
-)
 from fes_mj.common.console import print_table, say
 from fes_mj.linkage.turning import CRANK_ZERO, FROM_TOP, turning
 from fes_mj.statics.joint_forces import JointForces
@@ -62,22 +52,22 @@ def _comparison(loaded: list[Loaded], results: list[LegTurns], curves: bool) -> 
 def _print(loaded: Loaded, result: LegTurns, curves: bool, verbose: bool) -> None:
     first = result.first
     sides = ("quasi-static",) if len(result.turns) == 1 else ("right", "left")
-    names = [name for name, _ in power_rows(first)]
-    columns = [[value for _, value in power_rows(turn)] for turn in result.turns]
-    print_table(heading(first, result.legs), ("", *sides), [*zip(names, *columns, strict=True)])
+    names = [name for name, _ in tables.power_rows(first)]
+    columns = [[value for _, value in tables.power_rows(turn)] for turn in result.turns]
+    print_table(tables.heading(first, result.legs), ("", *sides), [*zip(names, *columns, strict=True)])
     if verbose:
-        print_budget(*result.turns)
+        tables.print_budget(*result.turns)
     elif result.power_sd is not None:
         say("+- is the error of the moments alone; --verbose adds the whole error budget")
     together = "quasi-static" if result.legs == 1 else "both legs"
-    print_table("The turn", ("", together), turn_rows(result.summary()))
-    print_forces(JointForces(first))
+    print_table("The turn", ("", together), tables.turn_rows(result.summary()))
+    tables.print_forces(JointForces(first))
     if verbose:
-        print_table("Joint reactions", ("joint", "mean N", "largest N"), force_rows(first.reactions))
+        print_table("Joint reactions", ("joint", "mean N", "largest N"), tables.force_rows(first.reactions))
     if curves:
         _print_curves(_curves(quasi_static(*loaded, points=36)))
     for turn in result.turns:
-        print_notes(turn, f"{turn.moments.name}: " if len(result.turns) > 1 else "")
+        tables.print_notes(turn, f"{turn.moments.name}: " if len(result.turns) > 1 else "")
 
 
 def _print_comparison(results: list[LegTurns]) -> None:
@@ -85,19 +75,22 @@ def _print_comparison(results: list[LegTurns]) -> None:
     summaries = [result.summary() for result in results]
     rows = [
         ("cadence, rpm", *(f"{content['cadence_rpm']:.1f}" for content in summaries)),
-        ("mean crank power of one leg, W", *(with_error(result.power_mean, result.power_sd) for result in results)),
+        (
+            "mean crank power of one leg, W",
+            *(tables.with_error(result.power_mean, result.power_sd) for result in results),
+        ),
         ("  per the first design's", *(_ratio(*result.ratio(results[0])) for result in results)),
     ]
-    columns = [[*power_rows(result.first)[1:], *turn_rows(result.summary())] for result in results]
+    columns = [[*tables.power_rows(result.first)[1:], *tables.turn_rows(result.summary())] for result in results]
     rows += [(row[0][0], *(value for _, value in row)) for row in zip(*columns, strict=True)]
     names = [result.first.design.name for result in results]
     print_table(f"{results[0].first.moments.name}, quasi-static", ("", *names), rows)
     for result in results:
-        print_notes(result.first, f"{result.first.design.name}: ")
+        tables.print_notes(result.first, f"{result.first.design.name}: ")
 
 
 def _ratio(ratio: float, deviation: float | None) -> str:
-    return f"{ratio:.3f}" + (f" +- {or_dash(deviation, '.3f')}" if deviation else "")
+    return f"{ratio:.3f}" + (f" +- {tables.or_dash(deviation, '.3f')}" if deviation else "")
 
 
 def _curves(result: QuasiStatic) -> dict[str, Any]:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from fes_mj.cli.options import Cadence, DesignName, Lag, Legs, PrintOptions, bounds, crank_speed, require_lag
+from fes_mj.cli.options import Cadence, DesignName, Dims, Lag, Legs, PrintOptions, bounds, crank_speed, require_lag
 from fes_mj.common.console import print_table, say
 from fes_mj.common.errors import require_extra
 from fes_mj.common.writing import PICTURES, require_writable, write_text
@@ -28,7 +28,7 @@ def stimulation(
     cadence: Annotated[list[Cadence] | None, Parameter(negative="", validator=bounds("cadence_rpm"))] = None,
     legs: Legs = 2,
     lag: Lag = 0.0,
-    dims: Literal["identified", "printed"] = "identified",
+    dims: Dims = "identified",
     csv: Path | None = None,
     plot: Path | None = None,
     options: PrintOptions = _DEFAULTS,
@@ -44,8 +44,6 @@ def stimulation(
     lag
         Of the muscles behind the stimulation, in s; the windows are advanced by what the crank turns in it. Cycles in
         use: 0.06 to 0.15.
-    dims
-        Dimensions of one of the paper's designs: as identified, or as the paper prints them.
     csv
         Write the windows as a table (.csv).
     plot

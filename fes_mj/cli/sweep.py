@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
 
-from fes_mj.cli.options import Jobs, Out, PrintOptions, warn_of
+from fes_mj.cli.options import Cadence, Jobs, Out, PrintOptions, warn_of
 from fes_mj.common.console import print_table, progress_bar
 from fes_mj.common.errors import InputError, require_extra
 from fes_mj.common.writing import make_folder, require_writable
@@ -26,6 +26,7 @@ def sweep(
     /,
     *,
     out: Out,
+    cadence: Cadence | None = None,
     jobs: Jobs | None = None,
     cluster: str | None = None,
     csv: Path | None = None,
@@ -40,6 +41,8 @@ def sweep(
         Study file (.toml): analysis, grid and sample.
     out
         Folder of the results, a Parquet file a chunk; made if it is not there.
+    cadence
+        Crank speed of all points in rpm, for a study that says nothing of it; by default each design's own.
     jobs
         Processes (default: one a core).
     cluster
@@ -56,7 +59,7 @@ def sweep(
     workers = Workers(jobs if jobs is not None else os.cpu_count() or 1, cluster)
     if cluster is not None:
         _require_address(cluster)
-    sweep = Sweep(load_study(study), out)
+    sweep = Sweep(load_study(study, cadence), out)
     for moments in sweep.study.moments.values():
         warn_of(moments)
     if plot:

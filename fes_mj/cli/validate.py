@@ -43,10 +43,8 @@ def validate(
 
     Parameters
     ----------
-    legs
-        With --quick 2 also checks two legs on one crank, as a full run always does.
     quick
-        Seconds instead of minutes: one rider group, one leg, no refinement.
+        Seconds instead of minutes: one rider group, no refinement, two legs on one crank only with --legs 2.
     faults
         Also inject faults into the first design named (default d1) and tell which check catches each.
     report

@@ -93,8 +93,11 @@ def label(axis: str) -> str:
     return ", ".join(part for part in (axis.removesuffix("_rpm"), unit) if part)
 
 
-def load_study(path: Path) -> Study:
-    """Read a study file. Raises InputError naming file, key and value, and what is allowed."""
+def load_study(path: Path, cadence: float | None = None) -> Study:
+    """Read a study file; cadence: of all points, rpm, for a file that says nothing of it.
+
+    Raises InputError naming file, key and value, and what is allowed.
+    """
     content = read_toml(path, "study")
     content.only(_TABLES)
     settings, grid, sample = (content.section(name) for name in _TABLES)
@@ -102,6 +105,10 @@ def load_study(path: Path) -> Study:
         section.only(_TABLES[section.name])
     grid.require(["design"], f"give a list, as in design = [{_EXAMPLES['design']}]")
     grid.content.setdefault("moments", [GROUPS[0]])
+    if cadence is not None:
+        if "cadence_rpm" in grid.content or "cadence_rpm" in sample.content:
+            raise InputError(f"{path}: cadence_rpm is given here; leave out --cadence")
+        grid.content["cadence_rpm"] = [cadence]
     analysis, size = settings.choice("analysis", ANALYSES, "static"), _few(sample, "size", sample.whole("size", 1))
     chunk = _chunk(settings, analysis, size * math.prod(_count(grid, axis) for axis in grid.content))
     axes = {axis: _axis(grid, axis) for axis in grid.content}

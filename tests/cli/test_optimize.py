@@ -132,7 +132,7 @@ def test_own_moments_have_no_error_bar(tmp_path: Path, capsys: pytest.CaptureFix
             ["cdt", "--start", "d1", "--speeds-of", "d1", "--ripple-limit", "10"],
             "is not feasible: speed_ripple is 0.16",
         ),
-        (["cdt", "--samples", "100"], "--samples is of a population; it needs --riders population"),
+        (["cdt", "--samples", "100"], "--samples needs --riders"),
         (["cdt", "--riders", "population", "--samples", "1"], '"1" for --samples. Must be >= 10.'),
         (["cdt", "--riders", "population", "--sample-seed", "-1"], '"-1" for --sample-seed. Must be >= 0.'),
         (["cdt", "--riders", "population-p10", "--caution", "1"], "is an objective of its own: not with --caution"),

@@ -76,6 +76,19 @@ def test_no_scheduler_loses_nothing(
     assert sorted(path.name for path in folder.iterdir()) == before
 
 
+def test_a_cadence_for_all_points(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "study.toml"
+    path.write_text('[grid]\ndesign = ["d1", "r2"]\n')
+    command = ["sweep", str(path), "-o", str(tmp_path / "out"), "--jobs", "1", "--cadence", "50", "--json"]
+    assert run(command) == 0
+    best = json.loads(capsys.readouterr().out)["best"]
+    assert run(["static", best["design"], "--cadence", "50", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["power_mean_W"] == pytest.approx(best["power_mean_W"], rel=1e-4)
+    path.write_text('[grid]\ndesign = ["d1"]\ncadence_rpm = [60]\n')
+    assert run(command) == 2
+    assert "cadence_rpm is given here; leave out --cadence" in capsys.readouterr().err
+
+
 def test_the_terminal_shows_the_ten_best(study: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["sweep", str(study), "-o", str(tmp_path / "out"), "--jobs", "1"]) == 0
     lines = capsys.readouterr().out.partition("Points with the most mean crank power")[2].splitlines()

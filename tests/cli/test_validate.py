@@ -22,6 +22,13 @@ def test_validate_quick_says_that_all_is_well(capsys: pytest.CaptureFixture[str]
     assert "faults" not in content
 
 
+def test_quick_checks_two_legs_when_asked(capsys: pytest.CaptureFixture[str]) -> None:
+    code, content = answer(capsys, "validate", "r1", "--quick", "--legs", "2")
+    both = [check for check in content["checks"] if check["subject"] == "r1 p1p2, two legs"]
+    assert code == 0
+    assert {"mean_power", "loop_gap"} <= {check["name"] for check in both}
+
+
 def test_a_failed_check_exits_with_1_and_is_named(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
