@@ -28,10 +28,11 @@ class Spread(NamedTuple):
     @classmethod
     def of(cls, powers: FloatArray) -> "Spread":
         """Of powers with NaN for linkages that do not turn; NaN if fewer than two do."""
-        some = powers[np.isfinite(powers)]
-        if some.size < 2:
-            return cls(math.nan, math.nan, powers.size - some.size)
-        return cls(float(some.mean()), float(some.std(ddof=1)), powers.size - some.size)
+        finite = powers[np.isfinite(powers)]
+        failed = powers.size - finite.size
+        if finite.size < 2:
+            return cls(math.nan, math.nan, failed)
+        return cls(float(finite.mean()), float(finite.std(ddof=1)), failed)
 
 
 @dataclass(frozen=True)
@@ -65,7 +66,7 @@ class ErrorBudget:
         largest = sorted(((sd, name) for name, sd in self.by.items() if sd and sd > self.total.sd / 100), reverse=True)
         alone = ", ".join(f"{name} {sd:.2g}" for sd, name in largest)
         failed = f"; {self.total.failed} of {self.draws} linkages drawn do not turn" * bool(self.total.failed)
-        together, at_its_speed = (with_sd(*each[:2], 1) for each in (self.total, self.at_its_speed))
+        together, at_its_speed = (with_sd(spread.mean, spread.sd, 1) for spread in (self.total, self.at_its_speed))
         return (
             f"{together} W with every unknown drawn (sd of each alone: {alone}), {at_its_speed} W with the speed "
             f"dependence as here{failed}"
@@ -74,9 +75,9 @@ class ErrorBudget:
 
 def error_budget(*legs: QuasiStatic, draws: int = DRAWS) -> ErrorBudget | None:
     """Of the mean power of legs, each with moments of its own; None where the error of any moments is not known."""
-    if any(each.moments.covariance is None for each in legs):
+    if any(leg.moments.covariance is None for leg in legs):
         return None
-    uncertain = [UncertainPower(each, draws) for each in legs]
+    uncertain = [UncertainPower(leg, draws) for leg in legs]
     names, alone = unknowns(*legs), np.arange(draws)
     by: dict[str, float | None] = dict.fromkeys(priors(), None) | {MASSES: 0.0} | _linear(legs)
     by |= {name: Spread.of(powers(uncertain, {name: alone})[0]).sd for name in names if name not in _OF_A_LEG}
@@ -91,7 +92,7 @@ def summary(budget: ErrorBudget | None) -> dict[str, Any]:
 
 def unknowns(*legs: QuasiStatic) -> list[str]:
     """Names of what can be drawn: without the cadence of the measurement neither speed dependence nor lag."""
-    known = all(each.moments.cadence_known for each in legs)
+    known = all(leg.moments.cadence_known for leg in legs)
     return [name for name in priors() if name != MASSES and (known or name not in (SPEED, LAG))]
 
 
@@ -103,19 +104,19 @@ def together(names: Iterable[str], count: int, times: int = 1) -> dict[str, IntA
 
 def powers(legs: list[UncertainPower], rows: Rows, *without: Collection[str]) -> FloatArray:
     """UncertainPower.at of the mean of legs; what belongs to a leg is independent of the other's."""
-    found = [legs[0].at(rows, *without)]
+    of_legs = [legs[0].at(rows, *without)]
     for leg in legs[1:]:
-        own = {name: leg.count - 1 - some if name in _OF_A_LEG else some for name, some in rows.items()}
-        found.append(leg.at(own, *without))
-    return np.asarray(np.mean(found, axis=0))
+        own = {name: leg.count - 1 - numbers if name in _OF_A_LEG else numbers for name, numbers in rows.items()}
+        of_legs.append(leg.at(own, *without))
+    return np.asarray(np.mean(of_legs, axis=0))
 
 
 def _linear(legs: Iterable[QuasiStatic]) -> dict[str, float]:
     """What needs no drawing: by the covariance of the moments, and by what is known of their range."""
     pairs = [
-        (standard_deviation(each.power_weights, each.moments.covariance), each.extrapolation.sd)
-        for each in legs
-        if each.moments.covariance is not None
+        (standard_deviation(leg.power_weights, leg.moments.covariance), leg.extrapolation.sd)
+        for leg in legs
+        if leg.moments.covariance is not None
     ]
-    moments, outside = (math.hypot(*some) / len(pairs) for some in zip(*pairs, strict=True))
+    moments, outside = (math.hypot(*deviations) / len(pairs) for deviations in zip(*pairs, strict=True))
     return {MOMENTS: moments, EXTRAPOLATION: outside}

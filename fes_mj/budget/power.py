@@ -62,19 +62,18 @@ class UncertainPower:
         """
         count = len(next(iter(rows.values())))
         blocks = [slice(start, start + BLOCK) for start in range(0, count, BLOCK)]
-        cases = [{name: some[block] for name, some in rows.items()} for block in blocks]
-        return np.concatenate([self._block(each, without) for each in cases], axis=1)
+        cases = [{name: numbers[block] for name, numbers in rows.items()} for block in blocks]
+        return np.concatenate([self._block(case, without) for case in cases], axis=1)
 
     def _block(self, rows: Rows, without: Sequence[Collection[str]]) -> FloatArray:
         motion = kinematics.solve(self._design(rows), SCAN)
         turns, count = _turns(motion), len(next(iter(rows.values())))
-        cases = [{name: some for name, some in rows.items() if name not in omitted} for omitted in ((), *without)]
-        return np.where(turns, [np.broadcast_to(self._mean(motion, each), count) for each in cases], np.nan)
+        cases = [{name: numbers for name, numbers in rows.items() if name not in omitted} for omitted in ((), *without)]
+        return np.where(turns, [np.broadcast_to(self._mean(motion, case), count) for case in cases], np.nan)
 
     def _design(self, rows: Rows) -> Design:
-        drawn = self.drawn
-        parts = ((DIMENSIONS, drawn.dimensions), (RIDER, drawn.legs))
-        values = {name: each[rows[key], None] for key, part in parts if key in rows for name, each in part.items()}
+        parts = ((DIMENSIONS, self.drawn.dimensions), (RIDER, self.drawn.legs))
+        values = {name: drawn[rows[key], None] for key, part in parts if key in rows for name, drawn in part.items()}
         return replaced(self.result.design, values)
 
     def _mean(self, motion: Motion, rows: Rows) -> FloatArray:
@@ -89,8 +88,8 @@ class UncertainPower:
         speeds, angles, rates = torque.reference.joint_rates(_TURN), motion.joint_angle, motion.joint_rate
         for joint, table in zip(JOINTS, tables, strict=True):
             rate, measured = rates[joint], torque.reference.cadence
-            told = commanded(table, relation, joint, measured * speeds[joint], lag * measured)
-            moment = _answer(_read(told, torque.source_angle(joint, angles[joint], rate)), lag, cadence, measured)
+            command = commanded(table, relation, joint, measured * speeds[joint], lag * measured)
+            moment = _answer(_read(command, torque.source_angle(joint, angles[joint], rate)), lag, cadence, measured)
             if relation:
                 moment = moment * relation.factor(joint, np.sign(moment) * cadence * rate)
             power = power + cadence * np.einsum("...a,...a->...", moment, rate) / rate.shape[-1]

@@ -37,8 +37,8 @@ def shares(
     problem = {"num_vars": len(names), "names": [*names], "bounds": [[0, 1]] * len(names)}
     points = sampling.sample(problem, samples, calc_second_order=False, seed=_SEED)
     places = np.minimum((points * count).astype(np.int64), count - 1)
-    found = power({name: order[name][places[:, column]] for column, name in enumerate(names)})
-    found = np.where(np.isfinite(found), found, np.nanmean(found))
-    result = analysis.analyze(problem, found, calc_second_order=False, seed=_SEED)
+    powers = power({name: order[name][places[:, column]] for column, name in enumerate(names)})
+    powers = np.where(np.isfinite(powers), powers, np.nanmean(powers))
+    result = analysis.analyze(problem, powers, calc_second_order=False, seed=_SEED)
     columns = (result[key] for key in ("S1", "S1_conf", "ST", "ST_conf"))
     return {name: Share(*map(float, row)) for name, *row in zip(names, *columns, strict=True)}

@@ -6,7 +6,7 @@ def printable(text: str) -> str:
 
     The result can be printed, drawn, encoded as UTF-8 and stand in XML.
     """
-    return "".join(each if each.isprintable() else each.encode("unicode_escape").decode() for each in text)
+    return "".join(letter if letter.isprintable() else letter.encode("unicode_escape").decode() for letter in text)
 
 
 def typeset(text: str) -> str:

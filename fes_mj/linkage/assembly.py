@@ -101,7 +101,7 @@ def _clearance(design: Design, links: tuple[str, str], spans: FloatArray, angles
     margins = np.stack([spans[0] - shortest, longest - spans[1]])
     worst = np.argmin(margins, axis=0)[None]
     margin, span, angle = (
-        np.take_along_axis(each, worst, axis=0)[0] for each in np.broadcast_arrays(margins, spans, angles)
+        np.take_along_axis(values, worst, axis=0)[0] for values in np.broadcast_arrays(margins, spans, angles)
     )
     return Clearance(links, margin, span, angle % (2 * np.pi))
 

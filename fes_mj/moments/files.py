@@ -15,6 +15,7 @@ from fes_mj.common.writing import csv_text
 from fes_mj.linkage import kinematics
 from fes_mj.moments.fourier import fit, fourier, gaps
 from fes_mj.moments.joint_moments import COLUMNS, GROUPS, MEASURED_POINTS, JointMoments, Misreading
+from fes_mj.moments.measured_turns import measured_turns
 from fes_mj.moments.measurement_file import Description
 from fes_mj.moments.misreading import odd_angles, odd_moments
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE, ReferenceTricycle
@@ -64,7 +65,7 @@ class Measurement:
             "power_sd_W": self.power_sd,
             "work_per_turn_J": sum(moments.power_mean) / turns_per_second(cadence),
             "cadence_rpm": cadence / RPM,
-            "warnings": [each._asdict() for each in moments.misreadings],
+            "warnings": [misreading._asdict() for misreading in moments.misreadings],
         }
 
 
@@ -86,7 +87,7 @@ def load_measurement(path: Path) -> Measurement:
     """Read a CSV with the header COLUMNS, crank angle from top dead centre, or a measurement file (.toml)."""
     if path.suffix.lower() == ".toml":
         description = Description.read(path)
-        return _measurement(path, *description.turns(), description.measured_on, description.cadence_known)
+        return _measurement(path, *measured_turns(description), description.measured_on, description.cadence_known)
     turn = _plain_turn(path)
     return _measurement(path, [turn], odd_angles(np.degrees(turn.crank_angle), "deg"), PAPER_TRICYCLE, False)
 

@@ -39,17 +39,17 @@ def fit(angle: FloatArray, values: FloatArray) -> FloatArray:
     bridge = _bridges(angle, values)
     angle, values = np.concatenate([angle, bridge[0]]), np.concatenate([values, bridge[1]])
     blocks = [slice(start, start + _BLOCK) for start in range(0, len(angle), _BLOCK)]  # a day of samples fits in memory
-    roughness, found = np.diag(_WEIGHTS[0] * _ROUGHNESS), np.zeros((TERMS, values.shape[1]))
+    roughness, closest = np.diag(_WEIGHTS[0] * _ROUGHNESS), np.zeros((TERMS, values.shape[1]))
     normal = np.sum([terms.T @ terms for terms in (fourier(angle[block]) for block in blocks)], axis=0) / len(angle)
     for _ in range(_PASSES):
-        missed, square = -roughness @ found, np.zeros(values.shape[1])
+        missed, square = -roughness @ closest, np.zeros(values.shape[1])
         for block in blocks:
             terms = fourier(angle[block])
-            miss = values[block] - terms @ found
+            miss = values[block] - terms @ closest
             missed += terms.T @ miss / len(angle)
             square += np.sum(miss**2, axis=0) / len(angle)
-        found += np.linalg.solve(normal + roughness, missed)
-    return _smoothed(found, square, normal, values)
+        closest += np.linalg.solve(normal + roughness, missed)
+    return _smoothed(closest, square, normal, values)
 
 
 def _smoothed(closest: FloatArray, square: FloatArray, normal: FloatArray, values: FloatArray) -> FloatArray:
@@ -62,7 +62,7 @@ def _smoothed(closest: FloatArray, square: FloatArray, normal: FloatArray, value
     low, high = values.min(axis=0), values.max(axis=0)
     margin = _SWING * (high - low) + 1e-9 * np.abs(values).max(axis=0)  # rounding, where all samples are the same
     lightest, rough = _WEIGHTS[0], _ROUGHNESS[:, None] * closest
-    found, least = closest, np.full(len(square), np.inf)
+    best, least = closest, np.full(len(square), np.inf)
     for weight in _WEIGHTS:
         inverse = np.linalg.inv(normal + np.diag(weight * _ROUGHNESS))
         change = (lightest - weight) * (inverse @ rough)
@@ -73,24 +73,24 @@ def _smoothed(closest: FloatArray, square: FloatArray, normal: FloatArray, value
         curves = turn @ tried
         inside = np.all((curves >= low - margin) & (curves <= high + margin), axis=0)
         better = inside & (score < least)
-        found, least = np.where(better, tried, found), np.where(better, score, least)
-    return found
+        best, least = np.where(better, tried, best), np.where(better, score, least)
+    return best
 
 
 def gaps(angle: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Angles in order within [0, 2 pi] and the way from each to the next, round the circle; rad."""
+    """Angles in order within [0, 2 pi] and the width of the gap from each to the next, round the circle; rad."""
     inside = np.sort(np.mod(angle, 2 * np.pi))
     return inside, np.diff(inside, append=inside[0] + 2 * np.pi)
 
 
 def _bridges(angle: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Points on straight lines across the wide gaps, and the curves' values there."""
-    inside, (known, ways) = np.mod(angle, 2 * np.pi), gaps(angle)
+    inside, (known, widths) = np.mod(angle, 2 * np.pi), gaps(angle)
     points, heights = [np.empty(0)], [np.empty((0, values.shape[1]))]
-    for number in np.flatnonzero(ways > WIDEST_GAP):
-        start, end = known[number], known[(number + 1) % len(known)]
-        first, last = (values[inside == each].mean(axis=0) for each in (start, end))
-        part = np.arange(_BRIDGE, ways[number] - _BRIDGE / 2, _BRIDGE) / ways[number]
-        points.append(start + part * ways[number])
+    for number in np.flatnonzero(widths > WIDEST_GAP):
+        start, stop = known[number], known[(number + 1) % len(known)]
+        first, last = (values[inside == end].mean(axis=0) for end in (start, stop))
+        part = np.arange(_BRIDGE, widths[number] - _BRIDGE / 2, _BRIDGE) / widths[number]
+        points.append(start + part * widths[number])
         heights.append(first + part[:, None] * (last - first))
     return np.concatenate(points), np.concatenate(heights)

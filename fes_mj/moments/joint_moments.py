@@ -82,7 +82,7 @@ class JointMoments:
     def at(self, crank_angle: Any) -> PerJoint[FloatArray]:
         """Moments at crank angles from top dead centre, rad, any shape, N m."""
         terms = fourier(crank_angle)
-        return self.coefficients.map(lambda each: np.asarray(np.einsum("...j,j->...", terms, each)))
+        return self.coefficients.map(lambda series: np.asarray(np.einsum("...j,j->...", terms, series)))
 
     def of_leg(self, name: str) -> "JointMoments":
         """The moments of the leg that a name or its prefix (design.LEGS) belongs to."""

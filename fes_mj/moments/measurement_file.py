@@ -2,25 +2,16 @@
 
 import math
 from dataclasses import dataclass, replace
-from itertools import pairwise
 from pathlib import Path
 
-import numpy as np
-
-from fes_mj.common.arrays import FloatArray
 from fes_mj.common.errors import AssemblyError, InputError
-from fes_mj.common.reading import Section, TextTable, read_toml
+from fes_mj.common.reading import Section, read_toml
 from fes_mj.common.units import RPM
-from fes_mj.linkage import kinematics
 from fes_mj.linkage.design_file import read_rider, read_values
 from fes_mj.linkage.joints import JOINTS, PerJoint
-from fes_mj.linkage.loads import leg_moments
 from fes_mj.linkage.turning import turning
 from fes_mj.linkage.variables import VARIABLES
-from fes_mj.moments.joint_moments import Misreading
-from fes_mj.moments.misreading import odd_angles
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE, ReferenceTricycle
-from fes_mj.moments.trial import WHAT, Turn, bounded, by_crank, by_knee, is_trial, load_table, says_radians, times
 
 _COLUMNS = {"crank": "crank_angle_deg", "knee": "knee_Nm", "hip": "hip_Nm"}
 _OTHERS = ("file", "kinematics", "knee_angle", "angle_unit", "zero", "turning", "unit", "extension", "pedal_force")
@@ -35,7 +26,8 @@ class Description:
     """A measurement file, every key checked.
 
     files: those that it names, moments first. sign: of extension. sense: of the crank angle. zero: where that is, rad
-    after top dead centre. scale: N m per unit of the file. pedal_force: columns of its components, or none.
+    after top dead centre. scale: N m per unit of the file. knee_angle: its column in the kinematics. pedal_force:
+    columns of its components, or none.
     """
 
     path: Path
@@ -43,6 +35,7 @@ class Description:
     data: list[Path]
     kinematics: list[Path]
     columns: dict[str, str]
+    knee_angle: str
     sign: PerJoint[float]
     sense: float
     zero: float
@@ -76,6 +69,7 @@ class Description:
             data,
             kinematics,
             {key: _word(section, key, default) for key, default in _COLUMNS.items()},
+            _word(section, "knee_angle", "knee_angle_r"),
             PerJoint.of(lambda joint: _SIGNS[extension.choice(joint, _SIGNS, "positive")]),
             _SENSES[section.choice("turning", _SENSES, "forward")],
             _zero(section, measured_on),
@@ -84,80 +78,6 @@ class Description:
             measured_on,
             bool({"cadence_rpm", "gear_ratio"} & content.section("measured_on").content.keys()),
         )
-
-    def turns(self) -> tuple[list[Turn], list[Misreading]]:
-        """Every turn that the files hold, and what looks wrong in their crank angles."""
-        turns: list[Turn] = []
-        odd: dict[str, Misreading] = {}
-        for number, path in enumerate(self.data):
-            if self.kinematics:
-                turns += self._by_knee(path, self.kinematics[number])
-            else:
-                found, wrong = self._by_crank(path)
-                turns += found
-                odd |= {each.name: each for each in wrong}
-        return turns, [*odd.values()]
-
-    def _by_crank(self, path: Path) -> tuple[list[Turn], list[Misreading]]:
-        """Turns of a file with a crank angle: of a trial over time each, of other rows one."""
-        table, crank = load_table(path, WHAT), self.columns["crank"]
-        trial = is_trial(table)
-        given, unit = bounded(table, crank, angle=True), self._angle_unit(table)
-        angle = self.sense * (np.radians(given) if unit == "deg" else given)
-        if trial:
-            times(table)
-        values = self._values(table)
-        rows = by_crank(path, crank, angle) if trial else [np.arange(len(angle))]
-        return [self._turn(angle[row] + self.zero, values[:, row]) for row in rows], odd_angles(given, unit)
-
-    def _by_knee(self, path: Path, kinematics: Path) -> list[Turn]:
-        """Turns of a trial, from one dead centre of the knee to the next, between which the crank turns evenly."""
-        column = _word(self.section, "knee_angle", "knee_angle_r")
-        motion, table = load_table(kinematics, "kinematics"), load_table(path, WHAT)
-        tops = by_knee(kinematics, column, times(motion), self.sign.knee * motion.column(column))
-        time, values = times(table), self._values(table)
-        if time[0] > tops[-1] or time[-1] < tops[0]:
-            raise InputError(
-                f"{path}: column time goes from {time[0]:g} to {time[-1]:g} s, whole turns of {kinematics} from "
-                f"{tops[0]:.4g} to {tops[-1]:.4g} s; moments.file and moments.kinematics must be of one trial"
-            )
-        turns = []
-        for start, end in pairwise(tops):
-            row = (start <= time) & (time < end)
-            if time[0] <= start and end <= time[-1]:
-                turns.append(self._turn(2 * np.pi * (time[row] - start) / (end - start), values[:, row]))
-        if not turns:
-            raise InputError(f"{path}: no whole turn of {kinematics} lies within {time[0]:g} to {time[-1]:g} s")
-        return turns
-
-    @property
-    def _measured(self) -> list[str]:
-        """The two columns that were measured."""
-        return self.pedal_force or [self.columns[joint] for joint in JOINTS]
-
-    def _values(self, table: TextTable) -> FloatArray:
-        """Knee and hip moment, N m, extension positive, or the two components of the pedal force, N; shape (2, n)."""
-        values = np.stack([bounded(table, column) for column in self._measured])
-        return values if self.pedal_force else self.scale * np.array([*self.sign])[:, None] * values
-
-    def _turn(self, angle: FloatArray, values: FloatArray) -> Turn:
-        """A turn at crank angles from top dead centre, rad; of pedal forces by inverse dynamics."""
-        if not self.pedal_force:
-            return Turn(angle, *values)
-        motion = kinematics.solve(self.measured_on.design, angle + self.measured_on.top_dead_centre)
-        return Turn(angle, *leg_moments(motion, self.measured_on.cadence, values[0] + 1j * values[1]))
-
-    def _angle_unit(self, table: TextTable) -> str:
-        """Unit of the crank angle: as declared, otherwise as the header of an OpenSim file says, otherwise deg."""
-        header = says_radians(table)
-        said = {None: "deg", True: "rad", False: "deg"}[header]
-        unit = self.section.choice("angle_unit", ("deg", "rad"), said)
-        if header is not None and unit != said:
-            raise InputError(
-                f"{table.path}: the header says that angles are in {said}, moments.angle_unit of {self.path} says "
-                f"{unit}; correct one of them"
-            )
-        return unit
 
 
 def _paths(section: Section, key: str) -> list[Path]:

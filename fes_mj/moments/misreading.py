@@ -25,26 +25,26 @@ def odd_angles(angle: FloatArray, unit: str) -> list[Misreading]:
 
 def odd_moments(turns: Sequence[Turn], moments: JointMoments) -> list[Misreading]:
     """What looks wrong in the moments themselves."""
-    found = []
+    misreadings = []
     largest = max(float(np.abs([turn.knee, turn.hip]).max()) for turn in turns)
     if largest < LEAST_MOMENT:
         text = f"the largest moment is {largest:.3g} N m; is the unit N m/kg?"
-        found.append(Misreading("per_kg", text))
+        misreadings.append(Misreading("per_kg", text))
     gap = max(float(gaps(turn.crank_angle)[1].max()) for turn in turns)
     if gap > WIDEST_GAP:
         text = f"there is no sample in {np.degrees(gap):.0f} deg of the turn; a straight line is drawn across"
-        found.append(Misreading("gap", text))
+        misreadings.append(Misreading("gap", text))
     power = moments.power_mean
     if sum(power) < 0:
         text = (
             f"the mean power in the tricycle of the measurement is {sum(power):.2f} W: these moments brake; "
             "are signs, zero or sense of the crank angle as declared?"
         )
-        found.append(Misreading("negative_power", text))
+        misreadings.append(Misreading("negative_power", text))
     if power.knee < 0 < power.hip - power.knee:
         text = (
             f"the knee takes {-power.knee:.2f} W from the crank; "
             "are extension and flexion exchanged? Extension is positive"
         )
-        found.append(Misreading("exchanged", text))
-    return found
+        misreadings.append(Misreading("exchanged", text))
+    return misreadings

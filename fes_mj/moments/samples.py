@@ -27,8 +27,8 @@ def sampled_coefficients(group: str) -> FloatArray:
 def sampled_moments(group: str, count: int | None = None) -> list[JointMoments]:
     """The curves drawn for "p1p2" or "p1p3", or so many of them, each as moments of its own, without a covariance."""
     curves = sampled_coefficients(group)
-    some = np.linspace(0, len(curves) - 1, count or len(curves)).astype(int)
-    return [moments_of(curves[row], f"{group} {row + 1}") for row in some]
+    rows = np.linspace(0, len(curves) - 1, count or len(curves)).astype(int)
+    return [moments_of(curves[row], f"{group} {row + 1}") for row in rows]
 
 
 def moments_of(coefficients: FloatArray, name: str) -> JointMoments:

@@ -73,7 +73,7 @@ def load_torque_velocity(name: str) -> TorqueVelocity:
 def drawn_relations(name: str, count: int, seed: int) -> list[TorqueVelocity]:
     """Relations drawn from the prior on parameters and shape of the one with this name."""
     random, prior, best = np.random.default_rng(seed), _row(name)["prior"], load_torque_velocity(name)
-    found = []
+    relations = []
     for faster, flatter, *even in zip(*random.standard_normal((2, count)), *random.random((3, count)), strict=True):
         factor = math.exp(prior["max_speed_log_sd"] * faster)
         curvature = best.curvature * math.exp(prior["curvature_log_sd"] * flatter)
@@ -81,14 +81,16 @@ def drawn_relations(name: str, count: int, seed: int) -> list[TorqueVelocity]:
             factor = math.radians(_between(prior["straight_end_deg_s"], even[2])) / best.max_speed["knee"]
             curvature = math.inf  # Hill's hyperbola is straight then
         speeds = {joint: factor * speed for joint, speed in best.max_speed.items()}
-        found.append(TorqueVelocity(name, curvature, _between(prior["eccentric_plateau"], even[0]), speeds))
-    return found
+        relations.append(TorqueVelocity(name, curvature, _between(prior["eccentric_plateau"], even[0]), speeds))
+    return relations
 
 
 def stacked(relations: Sequence[TorqueVelocity]) -> TorqueVelocity:
     """A batch of relations: its numbers are arrays of shape (relations, 1)."""
-    numbers: dict[str, Any] = {name: np.array([[getattr(each, name)] for each in relations]) for name in _NUMBERS}
-    speeds: Any = {joint: np.array([[each.max_speed[joint]] for each in relations]) for joint in JOINTS}
+    numbers: dict[str, Any] = {
+        name: np.array([[getattr(relation, name)] for relation in relations]) for name in _NUMBERS
+    }
+    speeds: Any = {joint: np.array([[relation.max_speed[joint]] for relation in relations]) for joint in JOINTS}
     return replace(relations[0], max_speed=speeds, **numbers)
 
 

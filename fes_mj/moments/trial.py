@@ -51,8 +51,8 @@ def bounded(table: TextTable, column: str, angle: bool = False) -> FloatArray:
 
 def says_radians(table: TextTable) -> bool | None:
     """Whether an OpenSim header says that angles are in radians; None if it does not say."""
-    found = re.search(r"^\s*inDegrees\s*=\s*(yes|no)\s*$", table.preamble, re.IGNORECASE | re.MULTILINE)
-    return found.group(1).lower() == "no" if found else None
+    declared = re.search(r"^\s*inDegrees\s*=\s*(yes|no)\s*$", table.preamble, re.IGNORECASE | re.MULTILINE)
+    return declared.group(1).lower() == "no" if declared else None
 
 
 def times(table: TextTable) -> FloatArray:
@@ -74,17 +74,17 @@ def by_crank(path: Path, column: str, angle: FloatArray) -> list[IntArray]:
 
     Turns are counted from the first sample. Raises InputError for fewer than one.
     """
-    way = np.unwrap(angle)
-    way = way - way[0]
-    if way[-1] < 0:
+    turned = np.unwrap(angle)
+    turned = turned - turned[0]
+    if turned[-1] < 0:
         raise InputError(
             f"{path}: {column} counts against the sense of pedalling while time grows; "
             'moments.turning must be the other of "forward" and "backward"'
         )
-    turns = int((way[-1] + np.median(np.diff(way))) / (2 * np.pi) + 1e-6)  # the last sample closes the turn
+    turns = int((turned[-1] + np.median(np.diff(turned))) / (2 * np.pi) + 1e-6)  # the last sample closes the turn
     if not turns:
-        raise InputError(f"{path}: {column} goes through {np.degrees(way[-1]):.0f} deg; a whole turn is needed")
-    number = np.floor(way / (2 * np.pi))
+        raise InputError(f"{path}: {column} goes through {np.degrees(turned[-1]):.0f} deg; a whole turn is needed")
+    number = np.floor(turned / (2 * np.pi))
     return [np.flatnonzero(number == turn) for turn in range(turns)]
 
 

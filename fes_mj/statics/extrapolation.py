@@ -62,7 +62,7 @@ def extrapolation(
         share=float(np.mean(outside.knee | outside.hip)),
         work_share=lost / max(float(work.knee.sum() + work.hip.sum()), np.finfo(float).tiny),
         sd=cadence * float(np.sqrt(np.einsum("...z,...z->...", zones, zones))),
-        excess=excess.map(lambda each: float(np.abs(each).max())),
+        excess=excess.map(lambda angles: float(np.abs(angles).max())),
     )
 
 
@@ -115,7 +115,7 @@ def outside_share(beyond: PerJoint[FloatArray]) -> FloatArray:
 
 def never_inside(beyond: PerJoint[FloatArray]) -> PerJoint[BoolArray]:
     """Whether each joint is beyond the range at every one of the angles (last axis)."""
-    return beyond.map(lambda each: each.min(axis=-1) > 0)
+    return beyond.map(lambda distance: distance.min(axis=-1) > 0)
 
 
 def drift_area(excess: FloatArray, half_range: float) -> FloatArray:
@@ -167,8 +167,8 @@ def _likely_cause(design: Design, reference: ReferenceTricycle) -> str:
         with suppress(AssemblyError):
             turn = turning(design.with_linkage(**changes))
             likely.append((_worst(turn, reference), cause))
-    worst, cause = min(likely, key=lambda pair: pair[0], default=(1.0, ""))
-    return f". Likely cause: {cause}" if worst < 1 else ""
+    excess, cause = min(likely, key=lambda pair: pair[0], default=(1.0, ""))
+    return f". Likely cause: {cause}" if excess < 1 else ""
 
 
 def _worst(turn: Turning, reference: ReferenceTricycle) -> float:

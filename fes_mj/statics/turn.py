@@ -137,7 +137,7 @@ class QuasiStatic:
             "extrapolated_work_share": self.extrapolation.work_share,
             "extrapolation_sd_W": self.extrapolation.sd,
             "notes": self.notes,
-            "warnings": [each._asdict() for each in self.moments.misreadings],
+            "warnings": [misreading._asdict() for misreading in self.moments.misreadings],
             "crank_angle_zero": CRANK_ZERO,
             "top_dead_centre_deg": float(np.degrees(turning(self.design).top_dead_centre)),
         }
