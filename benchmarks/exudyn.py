@@ -26,7 +26,7 @@ from fes_mj.linkage.kinematics import solve  # noqa: E402
 from fes_mj.linkage.segments import GRAVITY, inertias  # noqa: E402
 from fes_mj.moments.torque_map import torque_map  # noqa: E402
 from fes_mj.simulation.compiled import compiled_loop  # noqa: E402
-from fes_mj.simulation.mjcf import build_mjcf  # noqa: E402
+from fes_mj.simulation.mjcf import ModelOptions, build_mjcf  # noqa: E402
 from fes_mj.simulation.sensors import Sensors  # noqa: E402
 from fes_mj.simulation.stepping import PRE_ROLL, feedback_loop, run_loop  # noqa: E402
 from fes_mj.statics.equilibrium import crank_moment  # noqa: E402
@@ -95,7 +95,7 @@ def drive(mbs: Any, joint: str, markers: list[int], zero: float) -> None:
 def our_turn(design: fes_mj.Design, make_loop: Any) -> Turn:
     """The project's own run, its model compiled."""
     cadence, loop = design.linkage.cadence, make_loop(torque_map(MOMENTS), {"hip": "hip", "knee": "knee"})
-    model = build_mjcf(design, drawn=False).compile()
+    model = build_mjcf(design, options=ModelOptions(drawn=False)).compile()
 
     def turn(steps: int) -> tuple[Any, Any]:
         model.opt.timestep = 2 * np.pi / cadence / steps

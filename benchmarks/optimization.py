@@ -32,15 +32,16 @@ from fes_mj.optimization.evenness import RippleLimit
 from fes_mj.optimization.limits import load_limits
 from fes_mj.optimization.people import sampled
 from fes_mj.optimization.problem import Problem
-from fes_mj.simulation.bench import joint_drives, simulate
+from fes_mj.simulation.bench import BenchOptions, joint_drives, simulate
 from fes_mj.simulation.compiled import compiled_loop
-from fes_mj.simulation.mjcf import build_mjcf
+from fes_mj.simulation.mjcf import ModelOptions, build_mjcf
 from fes_mj.simulation.time_step import steps_per_turn
 from fes_mj.statics.cycles import CYCLE_POINTS, cycles, joint_speeds
 from fes_mj.statics.work_table import WorkTable
 
 DESIGNS, TURNS, THREADS = 2000, 16, 2
 MOMENTS = load_moments("p1p2")
+UNDRAWN, MACHINE_CODE = ModelOptions(drawn=False), BenchOptions(make_loop=compiled_loop)
 
 
 def population(design: Design, count: int, step: float = 0.002) -> np.ndarray:
@@ -142,7 +143,7 @@ def simulated() -> dict[str, np.ndarray]:
     """Simulated turns of D1 with riders of different mass per second."""
     riders = [load_design("d1").with_rider(mass=60.0 + i) for i in range(TURNS)]
     steps = steps_per_turn(riders[0], riders[0].linkage.cadence)
-    models = [build_mjcf(design, drawn=False).compile() for design in riders]
+    models = [build_mjcf(design, options=UNDRAWN).compile() for design in riders]
     loop = compiled_loop(torque_map(MOMENTS), joint_drives(ONE_LEG))
     full = mujoco.mjtState.mjSTATE_FULLPHYSICS
     states = np.empty((TURNS, mujoco.mj_stateSize(models[0], full)))
@@ -168,7 +169,7 @@ def simulated() -> dict[str, np.ndarray]:
             "single path: simulate": (TURNS, lambda: [simulate(design, MOMENTS) for design in riders]),
             "batch path: simulate, compiled": (
                 TURNS,
-                lambda: [simulate(design, MOMENTS, make_loop=compiled_loop) for design in riders],
+                lambda: [simulate(design, MOMENTS, options=MACHINE_CODE) for design in riders],
             ),
             "stepping of the batch path, one thread": (TURNS, lambda: list(map(fed_back, models))),
             "bare rollout, one thread": (

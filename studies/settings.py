@@ -31,7 +31,8 @@ from fes_mj.linkage.segments import inertias
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.torque_map import TorqueMap
 from fes_mj.simulation import mjcf, stepping
-from fes_mj.simulation.bench import Simulation
+from fes_mj.simulation.bench import BenchOptions, Simulation
+from fes_mj.simulation.mjcf import Physics
 from fes_mj.simulation.step_error import predicted_errors
 from fes_mj.simulation.stepping import FORCE_EVERY, Loop, drive_addresses
 from fes_mj.statics.turn import quasi_static
@@ -54,7 +55,8 @@ def measured(name: str) -> dict[str, Any]:
         soft, default = case.steps.run(), _DefaultLoops(design, moments).run()
     with patch.object(mjcf, "SERVO_GAIN", 1e6):
         weak, slow = case.steps.run(), Case(design, moments, SLOW * RPM).simulation
-    slower, stiff = (case.steps.run(timestep=FINE, loop_solref=(constant, 1.0)) for constant in (1e-5, 1e-7))
+    loops = (Physics(loop_solref=(constant, 1.0)) for constant in (1e-5, 1e-7))
+    slower, stiff = (case.steps.run(BenchOptions(physics), timestep=FINE) for physics in loops)
     idle = Case(design, NO_MOMENTS)
     mean = quasi_static(design, moments).power_mean
     return {
@@ -67,8 +69,8 @@ def measured(name: str) -> dict[str, Any]:
         "MuJoCo's softness: rms, W @.3f": case.rms_per_leg(soft),
         "servo of 1e6: rms, W @.4f": case.rms_per_leg(weak),
         "its ripple at 1 rpm @.1e": slow.cadence_ripple,
-        "plain mj_step: rms, W @.4f": case.rms_per_leg(case.steps.run(make_loop=plain_loop)),
-        "its error per e1 @.2f": per_first_order(idle, idle.steps.run(make_loop=plain_loop)),
+        "plain mj_step: rms, W @.4f": case.rms_per_leg(case.steps.run(PLAIN_LOOP)),
+        "its error per e1 @.2f": per_first_order(idle, idle.steps.run(PLAIN_LOOP)),
         "static mean against 36,000 angles @.0e": abs(mean / quasi_static(design, moments, points=MANY).power_mean - 1),
     }
 
@@ -99,6 +101,9 @@ def plain_loop(torque: TorqueMap, drives: dict[str, str]) -> Loop:
         return sensors, {"efc_force": np.array(forces)}
 
     return loop
+
+
+PLAIN_LOOP = BenchOptions(make_loop=plain_loop)
 
 
 def per_first_order(case: Case, run: Simulation) -> float:

@@ -1,9 +1,8 @@
 """The steps from a design under joint moments to a measured turn, each of which a fault can replace."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
@@ -17,8 +16,8 @@ from fes_mj.linkage.segments import GRAVITY
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.torque_map import TorqueMap, torque_map
 from fes_mj.simulation.appearance import Spec
-from fes_mj.simulation.bench import Simulation, simulate
-from fes_mj.simulation.mjcf import build_mjcf
+from fes_mj.simulation.bench import PLAIN, BenchOptions, Simulation, simulate
+from fes_mj.simulation.mjcf import REAL, ModelOptions, Physics, build_mjcf
 from fes_mj.statics.equilibrium import equilibrium, virtual_work
 from fes_mj.statics.extrapolation import turning_in_range
 from fes_mj.statics.turn import QuasiStatic
@@ -71,16 +70,26 @@ class Pipeline(Setup):
     def edit_model(self, spec: Spec) -> None:
         """Change the MuJoCo model before it is compiled; nothing is changed here."""
 
-    def run(self, **options: Any) -> Simulation:
-        """Simulate with these options of bench.simulate instead of the setup's own."""
-        own = {"cadence": self.cadence, "timestep": self.timestep, "turns": self.turns, "legs": self.legs}
-        return simulate(self.design, self.moments, **own | options, torque=self.torque, edit=self.edit_model)
+    def run(
+        self, options: BenchOptions = PLAIN, *, timestep: float | None = None, turns: float | None = None
+    ) -> Simulation:
+        """Simulate; timestep (s) and turns instead of the setup's own. Raises UnstableError if it breaks down."""
+        return simulate(
+            self.design,
+            self.moments,
+            cadence=self.cadence,
+            timestep=self.timestep if timestep is None else timestep,
+            turns=self.turns if turns is None else turns,
+            legs=self.legs,
+            options=replace(options, torque=self.torque, edit=self.edit_model),
+        )
 
     # What several steps give together.
 
-    def spec(self) -> Spec:
+    def spec(self, physics: Physics = REAL) -> Spec:
         """The MuJoCo model of one leg, not drawn."""
-        spec = build_mjcf(self.design, cadence=self.cadence, timestep=self.timestep, drawn=False)
+        options = ModelOptions(physics, drawn=False)
+        spec = build_mjcf(self.design, cadence=self.cadence, timestep=self.timestep, options=options)
         self.edit_model(spec)
         return spec
 

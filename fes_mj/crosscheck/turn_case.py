@@ -9,7 +9,8 @@ import numpy as np
 from fes_mj.common.arrays import FloatArray
 from fes_mj.common.checks import LEAST_POWER, Check, check
 from fes_mj.crosscheck.pipeline import Pipeline, Setup
-from fes_mj.simulation.bench import Simulation
+from fes_mj.simulation.bench import BenchOptions, Simulation
+from fes_mj.simulation.mjcf import Physics
 from fes_mj.statics.joint_forces import JointForces
 from fes_mj.statics.turn import TURN_POINTS, QuasiStatic
 
@@ -75,7 +76,7 @@ class Case(Setup):
     @cached_property
     def massless(self) -> Simulation:
         """The run with almost no masses and no weight."""
-        return self.steps.run(mass_scale=self.near_massless, gravity=0.0)
+        return self.steps.run(BenchOptions(Physics(self.near_massless, gravity=0.0)))
 
     @cached_property
     def near_massless(self) -> float:

@@ -85,7 +85,7 @@ class JointMoments:
         return self.coefficients.map(lambda series: np.asarray(np.einsum("...j,j->...", terms, series)))
 
     def of_leg(self, name: str) -> "JointMoments":
-        """The moments of the leg that a name or its prefix (design.LEGS) belongs to."""
+        """The moments of the leg that a name or its prefix (linkage.legs) belongs to."""
         return self.left if self.left and name.startswith("left_") else self
 
     def at_speed(self, relation: TorqueVelocity) -> "JointMoments":

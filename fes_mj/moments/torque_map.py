@@ -28,7 +28,7 @@ class TorqueMap:
         self.moments, self.reference = moments, moments.measured_on
 
     def of(self, name: str) -> "TorqueMap":
-        """The map of the leg that a name or its prefix (design.LEGS) belongs to: the left leg may have its own."""
+        """The map of the leg that a name or its prefix (linkage.legs) belongs to: the left leg may have its own."""
         own = self.moments.of_leg(name)
         return self if own is self.moments else torque_map(own)
 

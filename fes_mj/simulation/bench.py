@@ -11,11 +11,10 @@ from fes_mj.common.arrays import ComplexArray, FloatArray
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.joints import JOINTS, PerJoint
 from fes_mj.linkage.legs import LEGS, Leg
-from fes_mj.linkage.segments import GRAVITY
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.torque_map import TorqueMap, torque_map
 from fes_mj.simulation.appearance import Spec
-from fes_mj.simulation.mjcf import build_mjcf
+from fes_mj.simulation.mjcf import REAL, ModelOptions, Physics, build_mjcf
 from fes_mj.simulation.sensors import Sensors
 from fes_mj.simulation.stepping import PRE_ROLL, LoopMaker, Run, feedback_loop, run_loop
 from fes_mj.simulation.time_step import steps_per_turn
@@ -104,6 +103,25 @@ class Simulation:
         return float(np.abs(self.crank_speed / self.cadence - 1).max())
 
 
+@dataclass(frozen=True)
+class BenchOptions:
+    """How a model is run.
+
+    make_loop: compiled.compiled_loop steps in machine code, which pays beyond some hundred turns. torque: another map
+    than that of the moments. edit: changes the MjSpec before it is compiled. pre_roll: steps before the first that is
+    measured.
+    """
+
+    physics: Physics = REAL
+    make_loop: LoopMaker = feedback_loop
+    torque: TorqueMap | None = None
+    edit: Callable[[Spec], None] | None = None
+    pre_roll: int = PRE_ROLL
+
+
+PLAIN = BenchOptions()
+
+
 def simulate(
     design: Design,
     moments: JointMoments,
@@ -112,48 +130,33 @@ def simulate(
     timestep: float | None = None,
     turns: float = 1,
     legs: int = 1,
-    mass_scale: float = 1.0,
-    gravity: float = GRAVITY,
-    loop_solref: tuple[float, float] | None = None,
-    make_loop: LoopMaker = feedback_loop,
-    torque: TorqueMap | None = None,
-    edit: Callable[[Spec], None] | None = None,
-    pre_roll: int = PRE_ROLL,
+    options: BenchOptions = PLAIN,
 ) -> Simulation:
-    """Run turns of the model of build_mjcf (same arguments) under the torque map of `moments`.
+    """Run turns of the model of build_mjcf (which has the same cadence, timestep and legs) under joint moments.
 
-    make_loop: compiled.compiled_loop steps in machine code, which pays beyond some hundred turns. torque: another map
-    instead. edit: changes the MjSpec before it is compiled. pre_roll: steps before the first that is measured. Raises
-    InputError for a linkage that does not turn and for joints that never enter the moments' range, UnstableError if the
-    integration breaks down.
+    Raises InputError for a linkage that does not turn and for joints that never enter the moments' range, UnstableError
+    if the integration breaks down.
     """
-    cadence, torque = design.crank_speed(cadence), torque or torque_map(moments)
-    for leg in LEGS[legs]:
+    cadence = design.crank_speed(cadence)
+    torque, pair = options.torque or torque_map(moments), LEGS[legs]
+    for leg in pair:
         turning_in_range(design, torque.of(leg.prefix).reference)
-    spec = build_mjcf(
-        design,
-        cadence=cadence,
-        timestep=timestep,
-        legs=legs,
-        mass_scale=mass_scale,
-        gravity=gravity,
-        loop_solref=loop_solref,
-        drawn=False,
-    )
-    if edit:
-        edit(spec)
+    model_options = ModelOptions(options.physics, drawn=False)
+    spec = build_mjcf(design, cadence=cadence, timestep=timestep, legs=legs, options=model_options)
+    if options.edit:
+        options.edit(spec)
     model, steps = spec.compile(), round(turns * steps_per_turn(design, cadence, timestep, turns))
-    drives = joint_drives(LEGS[legs])
-    run = run_loop(model, make_loop(torque, drives), steps, pre_roll)
+    drives = joint_drives(pair)
+    run = run_loop(model, options.make_loop(torque, drives), steps, options.pre_roll)
     return Simulation(
         design=design,
         torque=torque,
         cadence=cadence,
         timestep=model.opt.timestep,
         turns=int(turns),
-        legs=LEGS[legs],
-        mass_scale=mass_scale,
-        gravity=gravity,
+        legs=pair,
+        mass_scale=options.physics.mass_scale,
+        gravity=options.physics.gravity,
         **_measured(model, run, torque, drives),
     )
 

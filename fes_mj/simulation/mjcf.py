@@ -6,6 +6,7 @@ phi_h, `knee` is phi_k, `crank` is theta_2.
 """
 
 import math
+from dataclasses import dataclass
 from typing import Any, Literal
 
 import mujoco
@@ -46,33 +47,59 @@ NO_MINUS = 0.0
 CUTS = ("pedal", "crank_pin")
 
 
+@dataclass(frozen=True)
+class Physics:
+    """What may differ from the leg that a model stands for.
+
+    mass_scale: factor on every mass and inertia. gravity: m/s^2. loop_solref: MuJoCo's time constant (s) and damping
+    ratio of the loops, by default LOOP_SOLREF.
+    """
+
+    mass_scale: float = 1.0
+    gravity: float = GRAVITY
+    loop_solref: tuple[float, float] | None = None
+
+
+REAL = Physics()
+
+
+@dataclass(frozen=True)
+class ModelOptions:
+    """What a model contains.
+
+    anchors: what the loops are closed between. driven: joint motors and, if also `held`, a cadence that is held: by a
+    servo, which needs the integrator `discrete`, or if `compatible` by a flywheel, which Euler bears. Where nothing
+    holds the crank, Runge-Kutta of fourth order keeps the energy, in steps short enough for the fastest turn.
+    drawn: geoms, which are pictures only and cost a fifth of a step.
+    """
+
+    physics: Physics = REAL
+    anchors: Literal["sites", "bodies"] = "sites"
+    driven: bool = True
+    held: bool = True
+    compatible: bool = False
+    drawn: bool = True
+
+
+COMPLETE = ModelOptions()
+
+
 def build_mjcf(
     design: Design,
     *,
     cadence: float | None = None,
     timestep: float | None = None,
     legs: int = 1,
-    mass_scale: float = 1.0,
-    gravity: float = GRAVITY,
-    loop_solref: tuple[float, float] | None = None,
-    anchors: Literal["sites", "bodies"] = "sites",
-    driven: bool = True,
-    held: bool = True,
-    compatible: bool = False,
-    drawn: bool = True,
+    options: ModelOptions = COMPLETE,
 ) -> Spec:
     """The model of a design at a cadence (rad/s, by default Eq. 16), assembled, with a keyframe at crank angle 0.
 
-    timestep: s; rounded so that a turn is a whole number of steps. mass_scale: factor on every mass and inertia.
-    loop_solref: MuJoCo's time constant (s) and damping ratio of the loops, by default LOOP_SOLREF.
-    anchors: what the loops are closed between. driven: with joint motors and, if also `held`, with a cadence that is
-    held: by a servo, which needs the integrator `discrete`, or if `compatible` by a flywheel, which Euler bears. Where
-    nothing holds the crank, Runge-Kutta of fourth order keeps the energy, in steps short enough for the fastest turn.
-    drawn: with geoms, which are pictures only and cost a fifth of a step.
-    Raises AssemblyError if the linkage does not close, InputError if MuJoCo refuses it.
+    timestep: s; rounded so that a turn is a whole number of steps, and by default chosen by time_step. legs: 1, or 2
+    half a turn apart on one crank. Raises AssemblyError if the linkage does not close, InputError if MuJoCo refuses it.
     """
     turning(design)
-    cadence, held = design.crank_speed(cadence), driven and held
+    pair, physics, held = LEGS[legs], options.physics, options.driven and options.held
+    cadence = design.crank_speed(cadence)
     spec = mujoco.MjSpec()
     spec.modelname = design.name
     spec.comment = f"{design.name}: {design.linkage.architecture.title}, {cadence / RPM:.2f} rpm"
@@ -80,27 +107,27 @@ def build_mjcf(
     spec.compiler.savecompiled = spec.compiler.savecanonical = False
     spec.compiler.degree = False
     loose = not held and timestep is None
-    steps = loose_steps(design, cadence, legs, gravity) if loose else steps_per_turn(design, cadence, timestep)
-    integrator = "rk4" if not held else "euler" if compatible else "discrete"
-    set_options(spec, 2 * math.pi / cadence / steps, gravity, integrator)
-    _set_defaults(spec, loop_solref or LOOP_SOLREF)
+    steps = loose_steps(design, cadence, legs, physics.gravity) if loose else steps_per_turn(design, cadence, timestep)
+    integrator = "rk4" if not held else "euler" if options.compatible else "discrete"
+    set_options(spec, 2 * math.pi / cadence / steps, physics.gravity, integrator)
+    _set_defaults(spec, physics.loop_solref or LOOP_SOLREF)
     # one fixed root: some readers drop all bodies but the first
     root = spec.worldbody.add_body(name="tricycle", childclass="tricycle")
-    masses = {body: _scaled(part, mass_scale) for body, part in inertias(design).items()}
-    masses["crank"] = combine(*(_turned(masses["crank"], -leg.lag) for leg in LEGS[legs]))
+    masses = {body: _scaled(part, physics.mass_scale) for body, part in inertias(design).items()}
+    masses["crank"] = combine(*(_turned(masses["crank"], -leg.lag) for leg in pair))
     crank = add_body(root, "crank", position(design.linkage.crank_centre), masses["crank"])
     crank.add_site(name="crank_torque")
     state = {"crank": (0.0, cadence)}
-    for leg in LEGS[legs]:
+    for leg in pair:
         start = _start_state(design, leg, cadence)
-        _add_leg(spec, root, design, leg, masses, start, anchors)
+        _add_leg(spec, root, design, leg, masses, start, options.anchors)
         state |= {leg.prefix + joint: values for joint, values in start.items()}
-    if drawn:
-        appearance.draw(spec, design, LEGS[legs])
-    if driven:
-        add_motors(spec, LEGS[legs])
+    if options.drawn:
+        appearance.draw(spec, design, pair)
+    if options.driven:
+        add_motors(spec, pair)
     if held:
-        _hold_cadence(spec, compatible)
+        _hold_cadence(spec, options.compatible)
     _add_sensors(spec)
     _add_keyframe(spec, state)
     return spec

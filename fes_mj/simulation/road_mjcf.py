@@ -17,6 +17,7 @@ from fes_mj.simulation.mjcf import (
     LOOP_SOLIMP,
     LOOP_SOLREF,
     NO_MINUS,
+    ModelOptions,
     add_motors,
     build_mjcf,
     joint_motion,
@@ -51,7 +52,8 @@ def build_road_mjcf(
     its damping. The slope tilts gravity. The tendon `drivetrain` is road less crank: a fixed gear holds its length; a
     freewheel only keeps it from becoming shorter, and whoever steps the model raises that limit to the length reached.
     """
-    spec = build_mjcf(ride.design, timestep=timestep, legs=len(TWO_LEGS), drawn=drawn, driven=False, anchors=anchors)
+    options = ModelOptions(driven=False, drawn=drawn, anchors=anchors)
+    spec = build_mjcf(ride.design, timestep=timestep, legs=len(TWO_LEGS), options=options)
     spec.option.timestep, spec.option.integrator = timestep, INTEGRATORS[integrator]
     spec.comment = f"{ride.name}: both legs on a tricycle that rides"
     spec.option.gravity = (GRAVITY * math.sin(ride.road.angle), 0.0, -GRAVITY * math.cos(ride.road.angle))

@@ -16,13 +16,13 @@ from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.torque_map import torque_map
 from fes_mj.riding.ride import Ride
 from fes_mj.simulation.appearance import Spec
-from fes_mj.simulation.mjcf import INTEGRATORS, SERVO, build_mjcf
+from fes_mj.simulation.mjcf import INTEGRATORS, SERVO, ModelOptions, build_mjcf
 from fes_mj.simulation.road_mjcf import build_road_mjcf
 from fes_mj.simulation.time_step import steps_per_turn
 from fes_mj.statics.turn import quasi_static
 
-# Variant -> what it sets: what the crank meets (servo, if nothing is said), how the tricycle of the road is geared, or
-# an argument of build_mjcf. Several may be combined unless they set the same thing differently.
+# Variant -> what it sets: what the crank meets (servo, if nothing is said), how the tricycle of the road is geared, how
+# many legs, or a field of ModelOptions. Several may be combined unless they set the same thing differently.
 VARIANTS: dict[str, dict[str, Any]] = {
     "sites": {"anchors": "sites"},
     "bodies": {"anchors": "bodies"},
@@ -64,18 +64,19 @@ def variant_model(design: Design, moments: JointMoments, cadence: float, options
     The moments set the range of the motors and the strength of the brake. Raises InputError as build_mjcf, and for a
     brake where the moments deliver no power.
     """
-    chosen = dict(options)
-    crank, transmission = chosen.pop("crank", "servo"), chosen.pop("transmission", "freewheel")
+    content = dict(options)
+    crank, transmission = content.pop("crank", "servo"), content.pop("transmission", "freewheel")
+    legs, timestep = content.pop("legs", 1), None
     if crank == "road":
         ride = Ride(design, moments, transmission=transmission)
-        del chosen["legs"]
-        spec = build_road_mjcf(replace(ride, launch=cadence * ride.travel), integrator=LADEN, **chosen)
-    elif crank == "brake":
-        step = 2 * math.pi / cadence / steps_per_turn(design, cadence)  # the flywheel lets no turn be much faster
-        spec = build_mjcf(design, cadence=cadence, timestep=step, held=False, **chosen)
-        _add_brake(spec, design, moments, cadence, chosen.get("legs", 1))
+        spec = build_road_mjcf(replace(ride, launch=cadence * ride.travel), integrator=LADEN, **content)
     else:
-        spec = build_mjcf(design, cadence=cadence, held=crank == "servo", **chosen)
+        if crank == "brake":  # the flywheel lets no turn be much faster
+            timestep = 2 * math.pi / cadence / steps_per_turn(design, cadence)
+        model = ModelOptions(held=crank == "servo", **content)
+        spec = build_mjcf(design, cadence=cadence, timestep=timestep, legs=legs, options=model)
+    if crank == "brake":
+        _add_brake(spec, design, moments, cadence, legs)
     _limit_controls(spec, moments, cadence)
     return spec
 

@@ -149,17 +149,16 @@ def _dynamic(
 
     Why a run breaks down or is refused goes to `why`.
     """
-    from fes_mj.simulation.bench import simulate
+    from fes_mj.simulation.bench import BenchOptions, simulate
     from fes_mj.simulation.compiled import compiled_loop
 
+    machine_code = BenchOptions(make_loop=compiled_loop)
     result = {name: np.full(len(why), np.nan) for name in _DYNAMIC}
     for row in np.flatnonzero(why == ""):
         point = {name: float(column[row]) for name, column in values.items()}
         cadence = point["cadence_rpm"] * RPM if "cadence_rpm" in point else None
         try:
-            run = simulate(
-                replaced(design, point), moments, cadence=cadence, timestep=timestep, make_loop=compiled_loop
-            )
+            run = simulate(replaced(design, point), moments, cadence=cadence, timestep=timestep, options=machine_code)
         except (UnstableError, InputError) as error:  # it breaks down, or needs more steps than there may be
             why[row] = str(error).removeprefix(f"{design.name}: ")
             continue

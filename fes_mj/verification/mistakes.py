@@ -21,6 +21,7 @@ from fes_mj.linkage.kinematics import Jet, Motion, Rotation
 from fes_mj.linkage.variables import ALL
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.moments.torque_map import GRID, TorqueMap
+from fes_mj.simulation.bench import PLAIN, BenchOptions
 from fes_mj.simulation.mjcf import SERVO, SERVO_GAIN
 from fes_mj.statics.equilibrium import equilibrium, joint_couples, moment_arm
 from fes_mj.verification.faults import Fault
@@ -151,17 +152,17 @@ def in_keyframe(field: str, joint: str, change: Callable[[float], float]) -> Ste
     return {"edit_model": edit}
 
 
-def late_torque(steps: Pipeline, **options: Any) -> Any:
-    run = Pipeline.run(steps, **options)
+def late_torque(steps: Pipeline, *arguments: Any, **options: Any) -> Any:
+    run = Pipeline.run(steps, *arguments, **options)
     return replace(run, crank_moment=np.roll(run.crank_moment, 1))
 
 
-def half_a_turn_more(steps: Pipeline, **options: Any) -> Any:
-    return replace(Pipeline.run(steps, turns=1.5, **options), turns=1)
+def half_a_turn_more(steps: Pipeline, *arguments: Any, **options: Any) -> Any:
+    return replace(Pipeline.run(steps, *arguments, **options | {"turns": 1.5}), turns=1)
 
 
-def without_pre_roll(steps: Pipeline, **options: Any) -> Any:
-    return Pipeline.run(steps, pre_roll=1, **options)
+def without_pre_roll(steps: Pipeline, options: BenchOptions = PLAIN, **own: Any) -> Any:
+    return Pipeline.run(steps, replace(options, pre_roll=1), **own)
 
 
 def without_couples(steps: Pipeline, *arguments: Any, **options: Any) -> Any:

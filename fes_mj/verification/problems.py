@@ -21,7 +21,7 @@ from fes_mj.common.checks import Check, check
 from fes_mj.linkage.design import Design, Linkage, Rider
 from fes_mj.linkage.segments import GRAVITY, Inertia
 from fes_mj.simulation.appearance import Spec
-from fes_mj.simulation.mjcf import AXIS, LOOP_SOLIMP, add_body, build_mjcf, set_options
+from fes_mj.simulation.mjcf import AXIS, LOOP_SOLIMP, ModelOptions, Physics, add_body, build_mjcf, set_options
 from fes_mj.simulation.sensors import Sensors
 from fes_mj.simulation.stepping import recording_loop, run_loop
 
@@ -141,7 +141,8 @@ def run_four_bar() -> tuple[float, float]:
     """
     linkage = Linkage("trt", ground=complex(-GROUND), crank=CRANK, foot=0.0, seat_angle=0.0)
     design = Design("four_bar", linkage, Rider(thigh=ROCKER, shank=COUPLER))
-    spec = build_mjcf(design, cadence=ONE_TURN_A_SECOND, timestep=FOUR_BAR_TIMESTEP, gravity=0.0)
+    weightless = ModelOptions(Physics(gravity=0.0))
+    spec = build_mjcf(design, cadence=ONE_TURN_A_SECOND, timestep=FOUR_BAR_TIMESTEP, options=weightless)
     for name, length in (("crank", CRANK), ("shank", COUPLER), ("thigh", ROCKER)):
         body, mass = spec.body(name), BAR_DENSITY * length * BAR_WIDTH**2
         body.mass, body.ipos, body.inertia = mass, (length / 2, 0, 0), [mass * (length**2 + BAR_WIDTH**2) / 12] * 3

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from fes_mj.crosscheck.turn_case import Case
-from fes_mj.simulation.bench import Simulation
-from fes_mj.simulation.mjcf import LOOP_SOLREF
+from fes_mj.simulation.bench import BenchOptions, Simulation
+from fes_mj.simulation.mjcf import LOOP_SOLREF, Physics
 from fes_mj.simulation.time_step import steps_per_turn
 from fes_mj.statics.equilibrium import virtual_work
 
@@ -111,7 +111,7 @@ def refine(case: Case) -> Refinement:
 
     def again(factor: int, loop_time: float) -> Level:
         timestep, solref = 2 * math.pi / case.cadence / (factor * count), (loop_time, LOOP_SOLREF[1])
-        return level(case.steps.run(timestep=timestep, loop_solref=solref), loop_time)
+        return level(case.steps.run(BenchOptions(Physics(loop_solref=solref)), timestep=timestep), loop_time)
 
     stiff = LOOP_SOLREF[0]
     steps = (level(case.simulation, stiff), *(again(factor, stiff) for factor in STEP_FACTORS[1:]))

@@ -42,3 +42,12 @@ def test_constraint_forces_are_the_reactions_of_the_massive_equilibrium(
     for loop, force in run.loop_force.items():
         size = np.abs(reactions[loop])[::FORCE_EVERY]
         assert np.sqrt(np.mean((np.abs(force) - size)[~turning[::FORCE_EVERY]] ** 2)) < 0.01 * size.max(), loop
+
+
+@pytest.mark.parametrize("legs", [0, 3])
+def test_a_rider_has_one_leg_or_two(legs: int, smooth_moments: fes_mj.JointMoments) -> None:
+    design = fes_mj.load_design("d1")
+    with pytest.raises(fes_mj.InputError, match=f"legs is {legs}"):
+        fes_mj.simulate(design, smooth_moments, legs=legs)
+    with pytest.raises(fes_mj.InputError, match="legs"):
+        fes_mj.build_mjcf(design, legs=legs)

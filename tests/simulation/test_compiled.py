@@ -5,7 +5,7 @@ import pytest
 
 import fes_mj
 from fes_mj.common.errors import UnstableError
-from fes_mj.simulation.bench import simulate
+from fes_mj.simulation.bench import BenchOptions, simulate
 from fes_mj.simulation.compiled import compiled_loop
 from fes_mj.simulation.stepping import feedback_loop
 
@@ -16,7 +16,8 @@ pytest.importorskip("numba")
 def test_the_same_run(name: str, legs: int, smooth_moments: fes_mj.JointMoments) -> None:
     design = fes_mj.load_design(name)
     slow, fast = (
-        simulate(design, smooth_moments, legs=legs, make_loop=maker) for maker in (feedback_loop, compiled_loop)
+        simulate(design, smooth_moments, legs=legs, options=BenchOptions(make_loop=maker))
+        for maker in (feedback_loop, compiled_loop)
     )
     assert np.array_equal(slow.crank_moment, fast.crank_moment)
     for mine, other in ((slow.joint_moment, fast.joint_moment), (slow.loop_force, fast.loop_force)):
@@ -28,7 +29,7 @@ def test_another_map_is_another_run() -> None:
     """The compiled loop takes its tables as they come: nothing of an earlier map stays behind."""
     design = fes_mj.load_design("d1")
     powers = [
-        simulate(design, fes_mj.load_moments(group), make_loop=compiled_loop).power_mean
+        simulate(design, fes_mj.load_moments(group), options=BenchOptions(make_loop=compiled_loop)).power_mean
         for group in ("p1p2", "p1p3", "p1p2")
     ]
     assert powers[0] == powers[2]
@@ -38,4 +39,4 @@ def test_another_map_is_another_run() -> None:
 def test_a_run_that_breaks_down_says_so(smooth_moments: fes_mj.JointMoments) -> None:
     huge = fes_mj.JointMoments("huge", smooth_moments.crank_angle, 1e13 * smooth_moments.knee, smooth_moments.hip)
     with pytest.raises(UnstableError, match="d1: the simulation became unstable"):
-        simulate(fes_mj.load_design("d1"), huge, make_loop=compiled_loop)
+        simulate(fes_mj.load_design("d1"), huge, options=BenchOptions(make_loop=compiled_loop))

@@ -20,7 +20,7 @@ from fes_mj.linkage.turning import FROM_TOP
 from fes_mj.moments.torque_map import torque_map
 from fes_mj.simulation.bench import joint_drives, simulate
 from fes_mj.simulation.export import mjcf_text, scene_text, sidecar_text
-from fes_mj.simulation.mjcf import build_mjcf
+from fes_mj.simulation.mjcf import ModelOptions, build_mjcf
 from fes_mj.simulation.sensors import Sensors
 from fes_mj.simulation.stepping import PRE_ROLL, drive_addresses
 from fes_mj.simulation.time_step import steps_per_turn
@@ -80,7 +80,7 @@ def test_the_ride_rolls_out_in_a_plain_loop(name: str, others: tuple[str, ...]) 
 def test_the_compatible_variant_gives_the_power_of_statics(name: str) -> None:
     """Euler and a flywheel in the place of `discrete` and a servo: same limits as the cross-check."""
     design, moments = load_design(name), load_moments()
-    model = build_mjcf(design, compatible=True).compile()
+    model = build_mjcf(design, options=ModelOptions(compatible=True)).compile()
     data, recorded = mujoco.MjData(model), []
     mujoco.mj_resetDataKeyframe(model, data, 0)
     drives = [(*drive_addresses(model, joint), torque_map(moments).feedback(joint)) for joint in JOINTS]
@@ -128,7 +128,8 @@ def test_a_comment_stands_where_it_belongs(said: str) -> None:
 def test_every_comment_stands_in_the_file_and_no_number_is_shortened(name: str) -> None:
     text = mjcf_text(build_mjcf(load_design(name)))
     assert text.count("<!--") == 11  # the heading and what a model with a servo has
-    assert mjcf_text(build_mjcf(load_design(name), compatible=True)).count("<!--") == 10  # no discrete, no servo
+    compatible = build_mjcf(load_design(name), options=ModelOptions(compatible=True))
+    assert mjcf_text(compatible).count("<!--") == 10  # no discrete, no servo
     assert f'timestep="{float(build_mjcf(load_design(name)).option.timestep)!r}"' in text
 
 

@@ -7,7 +7,7 @@ import pytest
 import fes_mj
 from fes_mj.linkage.kinematics import solve
 from fes_mj.linkage.segments import inertias
-from fes_mj.simulation.mjcf import build_mjcf
+from fes_mj.simulation.mjcf import ModelOptions, build_mjcf
 
 
 @pytest.mark.parametrize("anchors", ["sites", "bodies"])
@@ -15,7 +15,7 @@ from fes_mj.simulation.mjcf import build_mjcf
 def test_the_keyframe_is_assembled_and_moves_as_the_kinematics_say(
     design: fes_mj.Design, legs: int, anchors: str
 ) -> None:
-    model = build_mjcf(design, legs=legs, anchors=anchors).compile()
+    model = build_mjcf(design, legs=legs, options=ModelOptions(anchors=anchors)).compile()
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, 0)
     mujoco.mj_forward(model, data)

@@ -10,6 +10,7 @@ from fes_mj.common.units import RPM
 from fes_mj.crosscheck.turn_case import Case
 from fes_mj.linkage.assembly import clearances
 from fes_mj.simulation import time_step
+from fes_mj.simulation.mjcf import ModelOptions
 from fes_mj.simulation.time_step import FEWEST_STEPS, LOOSE_STEPS, MOST_STEPS, loose_steps, steps_per_turn
 from studies.random_linkages import random_design
 
@@ -65,7 +66,7 @@ def test_the_steps_of_a_loose_crank_know_its_fastest_speed(name: str, legs: int)
     """A turn in MuJoCo, or as far as it swings, is an independent way to the fastest speed."""
     design = fes_mj.load_design(name)
     cadence, steps = design.linkage.cadence, loose_steps(design, design.linkage.cadence, legs)
-    model = fes_mj.build_mjcf(design, legs=legs, driven=False, drawn=False).compile()
+    model = fes_mj.build_mjcf(design, legs=legs, options=ModelOptions(driven=False, drawn=False)).compile()
     assert model.opt.timestep == pytest.approx(2 * np.pi / cadence / steps)
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, 0)

@@ -6,7 +6,7 @@ import pytest
 
 import fes_mj
 from fes_mj.crosscheck.turn_case import Case
-from studies.settings import NO_MOMENTS, per_first_order, plain_loop
+from studies.settings import NO_MOMENTS, PLAIN_LOOP, per_first_order
 
 PAGE = Path(__file__).parents[2] / "results" / "settings.md"
 
@@ -21,7 +21,7 @@ def row(name: str) -> dict[str, str]:
 @pytest.mark.parametrize("name", ["r1", "d1"])
 def test_a_plain_step_errs_as_the_closed_form_says(name: str) -> None:
     idle = Case(fes_mj.load_design(name), NO_MOMENTS)
-    found = per_first_order(idle, idle.steps.run(make_loop=plain_loop))
+    found = per_first_order(idle, idle.steps.run(PLAIN_LOOP))
     assert found == pytest.approx(1, abs=0.1)
     assert float(row(name)["its error per e1"]) == pytest.approx(found, abs=0.006)
 
@@ -30,5 +30,5 @@ def test_a_plain_step_errs_as_the_closed_form_says(name: str) -> None:
 def test_the_page_is_todays(name: str) -> None:
     case = Case(fes_mj.load_design(name), fes_mj.load_moments())
     assert float(row(name)["rms, W"]) == pytest.approx(case.rms_per_leg(case.simulation), abs=6e-5)
-    plain = case.rms_per_leg(case.steps.run(make_loop=plain_loop))
+    plain = case.rms_per_leg(case.steps.run(PLAIN_LOOP))
     assert float(row(name)["plain mj_step: rms, W"]) == pytest.approx(plain, abs=6e-5)
