@@ -108,7 +108,7 @@ def faults(rows: list[dict[str, Any]]) -> Table:
             "times its limit": ".2g",
             "checks that noticed": "d",
         },
-        [(row["mistake"], row["guard"], row["check"], row["factor"], len(row["failed"])) for row in rows],
+        [(row["mistake"], ", ".join(row["guards"]), row["check"], row["factor"], len(row["failed"])) for row in rows],
         "Each mistake is put into D1 on its own. A dash: infinitely beyond its limit.",
     )
 

@@ -16,7 +16,7 @@ from fes_mj.common.console import conclude, number, print_table, say, track
 from fes_mj.common.errors import InputError
 from fes_mj.common.provenance import provenance
 from fes_mj.common.writing import require_writable, write_text
-from fes_mj.linkage.design_file import DESIGNS
+from fes_mj.linkage.design_file import DESIGNS, design_path
 from fes_mj.statics.extrapolation import turning_in_range
 
 if TYPE_CHECKING:
@@ -104,7 +104,9 @@ def _cases(designs: Sequence[str], options: RunOptions, quick: bool) -> Iterator
     for design in dict.fromkeys(designs):
         printed = table1()[design] if design in DESIGNS and options.dims == "identified" else None
         for choice in chosen:
-            case = VerificationCase(*choice.load(design), expected=printed, refined=not quick)
+            case = VerificationCase(
+                *choice.load(design), expected=printed, file=design_path(design, options.dims), refined=not quick
+            )
             turning_in_range(case.design, case.moments.measured_on)
             yield case
 

@@ -25,14 +25,19 @@ def load_design(source: str | Path, dims: str = "identified") -> Design:
 
     Raises InputError naming the file, the key, the value and what is allowed.
     """
+    return _read(design_path(source, dims))
+
+
+def design_path(source: str | Path, dims: str = "identified") -> Path:
+    """The file that load_design reads. Raises InputError for a name that is neither a design's nor a file's."""
     if dims not in DIMENSIONS:
         raise InputError(f"dims is {dims!r}; it must be one of {', '.join(DIMENSIONS)}")
     if source in DESIGNS:
-        return _read(_FOLDER / dims / f"{source}.toml")
+        return _FOLDER / dims / f"{source}.toml"
     path = Path(source)
     if path.suffix != ".toml" and (len(str(source)) > 255 or "\0" in str(source) or not path.exists()):
         raise InputError(f"{source}: no such design; it must be one of {', '.join(DESIGNS)} or a path to a .toml file")
-    return _read(path)
+    return path
 
 
 def identified_draws(name: str) -> dict[str, FloatArray]:

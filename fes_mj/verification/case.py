@@ -1,8 +1,9 @@
 """The measured case of the cross-check with what verification adds: audit, refinement, the paper's printed values."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
+from pathlib import Path
 from typing import Any, NamedTuple
 
 from fes_mj.crosscheck.ride_case import RideCase
@@ -31,22 +32,36 @@ class Expected(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class VerificationCase(Case):
-    """A case that is verified; expected: printed values, of the paper's designs only. refined: in a full run."""
+    """A case that is verified.
+
+    expected: printed values, of the paper's designs only. file: that the design was read from. refined: in a full run.
+    ride_case: the class of the rides' cases; another one is a ride with a fault.
+    """
 
     expected: Expected | None = None
+    file: Path | None = None
     refined: bool = False
+    ride_case: type[RideCase] = field(default=RideCase, kw_only=True)
 
     @cached_property
     def two_legs(self) -> Case:
         """The same with two legs half a turn apart on one crank."""
-        return Case(self.design, self.moments, self.cadence, self.timestep, legs=2, label=f"{self.name}, two legs")
+        return Case(
+            self.design,
+            self.moments,
+            self.cadence,
+            self.timestep,
+            legs=2,
+            label=f"{self.name}, two legs",
+            pipeline=self.pipeline,
+        )
 
     @cached_property
     def rides(self) -> list[RideCase]:
         """Short rides on the flat with either transmission, launched at the speed of the cadence."""
         ride = Ride(self.design, self.moments, duration=RIDE_DURATION)
         ride = replace(ride, launch=self.cadence * ride.travel)
-        return [RideCase(replace(ride, transmission=kind)) for kind in TRANSMISSIONS]
+        return [self.ride_case(replace(ride, transmission=kind)) for kind in TRANSMISSIONS]
 
     @cached_property
     def audit(self) -> Audit:

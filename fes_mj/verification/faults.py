@@ -13,31 +13,46 @@ from fes_mj.common.checks import Check, definitions
 from fes_mj.common.errors import AssemblyError
 from fes_mj.linkage.design import Design
 from fes_mj.verification.case import VerificationCase
-from fes_mj.verification.suite import FULL, QUICK, Stage, verify
+from fes_mj.verification.suite import FULL, QUICK, Stage, refinement_checks, ride_checks, verify
 
 
 class Fault(NamedTuple):
-    """A mistake, the check that stands guard against it, and how it is made.
+    """A mistake, the checks that stand guard against it, and how it is made.
 
-    steps: step of the pipeline -> what takes its place. edit: of the design, which only printed values can tell from
-    the right one. kinds: linkages that can have it.
+    steps: step of the pipeline -> what takes its place. ride_steps: the same of a RideCase. edit: of the design where
+    its file is read. kinds: linkages that can have it.
     """
 
     name: str
     mistake: str
-    guard: str
+    guards: tuple[str, ...]
     steps: Mapping[str, Any] = {}
+    ride_steps: Mapping[str, Any] = {}
     edit: Callable[[Design], Design] | None = None
     kinds: tuple[str, ...] = ("trt", "crt", "cdt")
 
     def applies(self, case: VerificationCase) -> bool:
         """Whether the mistake can be made in this case, and be noticed."""
-        return case.design.linkage.kind in self.kinds and (self.edit is None or case.expected is not None)
+        edited = self.edit is None or (case.file is not None and self.edit(case.design) != case.design)
+        return case.design.linkage.kind in self.kinds and edited
+
+    @property
+    def stages(self) -> tuple[Stage, ...]:
+        """Of the suite, those that can notice: the rides, or the quick ones and what only refinement can see."""
+        if self.ride_steps:
+            return (ride_checks,)
+        refined = any(definitions()[guard].kind == "solution verification" for guard in self.guards)
+        return (*QUICK, refinement_checks) if refined else QUICK
 
     def put_into(self, case: VerificationCase) -> VerificationCase:
         """The case with the mistake in it; nothing measured of the original is taken over."""
         design = self.edit(case.design) if self.edit else case.design
-        return replace(case, design=design, pipeline=type("FaultyPipeline", (case.pipeline,), dict(self.steps)))
+        return replace(
+            case,
+            design=design,
+            pipeline=type("FaultyPipeline", (case.pipeline,), dict(self.steps)),
+            ride_case=type("FaultyRide", (case.ride_case,), dict(self.ride_steps)),
+        )
 
 
 class Detection(NamedTuple):
@@ -52,8 +67,8 @@ class Detection(NamedTuple):
 
     @property
     def guarded(self) -> bool:
-        """Whether the check that is there for it noticed."""
-        return self.fault.guard in {each.name for each in self.failed}
+        """Whether the checks that are there for it noticed, as far as the case has them."""
+        return bool({*self.fault.guards} & {check.name for check in self.failed})
 
     @property
     def first(self) -> Check | None:
@@ -68,9 +83,9 @@ class Detection(NamedTuple):
             "caught": self.caught,
             "check": self.first.name if self.first else None,
             "factor": self.first.factor if self.first else None,
-            "guard": self.fault.guard,
+            "guards": [*self.fault.guards],
             "caught_by_guard": self.guarded,
-            "failed": {each.name: each.factor for each in reversed(self.failed)},
+            "failed": {check.name: check.factor for check in reversed(self.failed)},
         }
 
 
@@ -79,19 +94,14 @@ def inject(fault: Fault, case: VerificationCase, baseline: Mapping[str, bool]) -
     failed: list[Check] = []
     with suppress(AssemblyError):  # `loop_closure` has noticed before the model could be built
         failed += (
-            each for each in verify(fault.put_into(case), _stages(fault)) if not each.ok and baseline.get(each.name)
+            check for check in verify(fault.put_into(case), fault.stages) if not check.ok and baseline.get(check.name)
         )
     return Detection(fault, tuple(failed))
-
-
-def _stages(fault: Fault) -> tuple[Stage, ...]:
-    """The quick suite, and refinement for what only refinement can see."""
-    return FULL if definitions()[fault.guard].kind == "solution verification" else QUICK
 
 
 def passing(case: VerificationCase) -> dict[str, bool]:
     """Check name -> whether it passes on the case as it is, whatever it is measured on."""
     passes: dict[str, bool] = {}
-    for each in verify(case, FULL):
-        passes[each.name] = each.ok and passes.get(each.name, True)
+    for check in verify(case, FULL):
+        passes[check.name] = check.ok and passes.get(check.name, True)
     return passes

@@ -15,7 +15,8 @@ import numpy as np
 from fes_mj.common.arrays import FloatArray
 from fes_mj.common.reading import DATA, read_toml
 from fes_mj.crosscheck.pipeline import Pipeline
-from fes_mj.linkage.design import Design
+from fes_mj.linkage import kinematics
+from fes_mj.linkage.design import BODIES, Design
 from fes_mj.linkage.joints import PerJoint
 from fes_mj.linkage.kinematics import Jet, Motion, Rotation
 from fes_mj.linkage.variables import ALL
@@ -23,6 +24,7 @@ from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.moments.torque_map import GRID, TorqueMap
 from fes_mj.simulation.bench import PLAIN, BenchOptions
 from fes_mj.simulation.mjcf import SERVO, SERVO_GAIN
+from fes_mj.simulation.time_step import steps_per_turn
 from fes_mj.statics.equilibrium import equilibrium, joint_couples, moment_arm
 from fes_mj.verification.faults import Fault
 
@@ -32,6 +34,11 @@ _FILE = DATA / "faults.toml"
 
 def with_equilibrium(**options: Any) -> Steps:
     return {"equilibrium": lambda _, motion, moments, loads=None: equilibrium(motion, moments, loads, **options)}
+
+
+def with_loads_at_joints(steps: Pipeline, motion: Motion, moments: Any, loads: Any = None) -> Any:
+    moved = {body: load._replace(point=motion.points[BODIES[body][0]]) for body, load in (loads or {}).items()}
+    return Pipeline.equilibrium(steps, motion, moments, moved)
 
 
 def shank_turned(moment: PerJoint[FloatArray]) -> dict[str, FloatArray]:
@@ -72,6 +79,11 @@ def without_centripetal(motion: Motion) -> Motion:
     knee, thigh = motion.points["knee"], motion.rotation["thigh"]
     tangential = 1j * thigh.second * knee.value
     return replace(motion, points=motion.points | {"knee": Jet(knee.value, knee.first, tangential)})
+
+
+def long_thigh(motion: Motion) -> Motion:
+    design = motion.design.with_rider(thigh=1.0001 * motion.design.rider.thigh)
+    return replace(kinematics.solve(design, motion.crank_angle), design=motion.design)
 
 
 def in_map(kind: type[TorqueMap]) -> Steps:
@@ -165,6 +177,16 @@ def without_pre_roll(steps: Pipeline, options: BenchOptions = PLAIN, **own: Any)
     return Pipeline.run(steps, replace(options, pre_roll=1), **own)
 
 
+def coarser(steps: Pipeline, options: BenchOptions = PLAIN, *, timestep: float | None = None, **own: Any) -> Any:
+    count = steps_per_turn(steps.design, steps.cadence, timestep or steps.timestep)
+    return Pipeline.run(steps, options, timestep=16 * 2 * math.pi / steps.cadence / count, **own)
+
+
+def with_whole_couples(steps: Pipeline, motion: Motion, *arguments: Any, **options: Any) -> Any:
+    whole, loads = Pipeline.loads(steps, motion), Pipeline.loads(steps, motion, *arguments, **options)
+    return {body: load._replace(couple=whole[body].couple) for body, load in loads.items()}
+
+
 def without_couples(steps: Pipeline, *arguments: Any, **options: Any) -> Any:
     loads = Pipeline.loads(steps, *arguments, **options)
     return {body: load._replace(couple=0 * load.couple) for body, load in loads.items()}
@@ -184,10 +206,12 @@ _TILT = math.radians(0.1)
 STEPS: dict[str, Steps] = {
     "knee_sign": with_equilibrium(couples=shank_turned),
     "thigh_lever": with_equilibrium(arm=without_length),
+    "loads_at_joints": {"equilibrium": with_loads_at_joints},
     "map_by_crank_angle": {"joint_moment": by_crank_angle},
     "wrong_branch": in_motion(knee_below),
     "wrong_rate": in_motion(knee_from_shank_alone),
     "no_centripetal": in_motion(without_centripetal),
+    "length_in_kinematics": in_motion(long_thigh),
     "directions_exchanged": in_map(DirectionsExchanged),
     "crank_zero": in_map(FromHorizontal),
     "boot_forgotten": in_map(BootForgotten),
@@ -196,6 +220,7 @@ STEPS: dict[str, Steps] = {
     "length_in_model": in_model("bodies", "shank", pos=times(1.01)),
     "default_solref": in_model("equalities", solref=(0.02, 1.0)),
     "soft_loops": in_model("equalities", solref=(0.002, 1.0)),
+    "loops_in_milliseconds": in_model("equalities", solref=times(1e3)),
     "loop_inactive": in_model("equalities", active=False),
     "pins_apart": in_model("sites", "shank_pedal", pos=lambda pos: (pos[0], 1e-3, pos[2])),
     "weak_servo": in_model("actuators", SERVO, gainprm=times(20 / SERVO_GAIN), biasprm=times(1, 1, 20 / SERVO_GAIN)),
@@ -212,13 +237,16 @@ STEPS: dict[str, Steps] = {
     "late_torque": {"run": late_torque},
     "turn_and_a_half": {"run": half_a_turn_more},
     "no_pre_roll": {"run": without_pre_roll},
+    "coarse_step": {"run": coarser},
     "no_rotary_inertia": {"loads": without_couples},
+    "inertia_not_scaled": {"loads": with_whole_couples},
 }
-# Edits of the design file, which only printed values can tell from the right one.
+# Edits of the design where its file is read.
 EDITS: dict[str, Callable[[Design], Design]] = {
     "coupler_angle": in_linkage(coupler_angle=lambda angle: angle + math.radians(5)),
     "length_in_file": in_linkage(crank=lambda crank: 1.01 * crank),
     "seat_angle": in_linkage(seat_angle=lambda _: _SEAT_OF_TRT),
+    "wheel_radius": in_linkage(gear_ratio=lambda ratio: 2 * ratio),
 }
 
 
@@ -227,6 +255,13 @@ def faults() -> tuple[Fault, ...]:
     """Every fault of data/faults.toml."""
     rows = read_toml(_FILE, "faults").content
     return tuple(
-        Fault(name, row["mistake"], row["guard"], STEPS.get(name, {}), EDITS.get(name), tuple(row.get("kinds", ALL)))
+        Fault(
+            name,
+            row["mistake"],
+            tuple(row["guards"]),
+            steps=STEPS.get(name, {}),
+            edit=EDITS.get(name),
+            kinds=tuple(row.get("kinds", ALL)),
+        )
         for name, row in rows.items()
     )

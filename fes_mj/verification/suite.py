@@ -13,6 +13,7 @@ from fes_mj.common.units import turns_per_second
 from fes_mj.linkage.assembly import joint_ranges
 from fes_mj.simulation.mjcf import SERVO_GAIN
 from fes_mj.verification.case import VerificationCase
+from fes_mj.verification.design_file import file_checks
 from fes_mj.verification.geometry import geometry_checks
 from fes_mj.verification.model import map_checks, model_checks
 from fes_mj.verification.problems import chain_checks, four_bar_checks
@@ -84,7 +85,10 @@ def ride_checks(case: VerificationCase) -> list[Check]:
 
 
 Stage: TypeAlias = Callable[[VerificationCase], list[Check]]
-QUICK: tuple[Stage, ...] = (geometry_checks, map_checks, exact_checks, model_checks, turn_checks, printed_checks)
+QUICK: tuple[Stage, ...] = (
+    *(geometry_checks, file_checks, map_checks, exact_checks, model_checks, turn_checks),
+    printed_checks,
+)
 FULL = (*QUICK, two_leg_checks, refinement_checks, ride_checks)
 BENCHMARKS = {"A02": chain_checks, "four-bar": four_bar_checks}
 

@@ -3,13 +3,19 @@
 import pytest
 
 import fes_mj
+from fes_mj.linkage.design_file import design_path
 from fes_mj.paper.printed import table1
 from fes_mj.verification.case import VerificationCase
 
 
 def case_of(source: str) -> VerificationCase:
     """A design under the moments of P1P2, with what is printed of it."""
-    return VerificationCase(fes_mj.load_design(source), fes_mj.load_moments("p1p2"), expected=table1().get(source))
+    return VerificationCase(
+        fes_mj.load_design(source),
+        fes_mj.load_moments("p1p2"),
+        expected=table1().get(source),
+        file=design_path(source),
+    )
 
 
 @pytest.fixture(scope="module")

@@ -11,6 +11,7 @@ from fes_mj.verification.mistakes import faults
 from tests.verification.conftest import case_of
 
 ROOT = Path(__file__).parents[2]
+SHARP = 3  # times the limit of at least one check
 
 
 @pytest.fixture(scope="module")
@@ -26,10 +27,10 @@ def test_everything_holds_without_a_fault(baseline: dict[str, bool]) -> None:
 def test_the_guard_notices(fault: Fault, case: VerificationCase, baseline: dict[str, bool]) -> None:
     assert fault.applies(case)
     detection = inject(fault, case, baseline)
-    assert detection.guarded, [each.name for each in detection.failed]
-    assert all(baseline[each.name] for each in detection.failed)
-    assert detection.first is not None
-    assert detection.first.factor > 1
+    factors = {check.name: check.factor for check in detection.failed}
+    assert {*fault.guards} <= factors.keys()
+    assert all(baseline[name] for name in factors)
+    assert max(factors.values()) >= SHARP
 
 
 @pytest.mark.long
@@ -40,7 +41,9 @@ def test_any_design_can_be_used(source: str) -> None:
     assert all(baseline.values())
     for fault in faults():
         if fault.applies(case):
-            assert inject(fault, case, baseline).caught, fault.name
+            detection = inject(fault, case, baseline)
+            assert detection.guarded, fault.name
+            assert max(check.factor for check in detection.failed) >= SHARP, fault.name
         else:
             assert fault.edit or case.design.linkage.kind not in fault.kinds, fault.name
 
@@ -57,6 +60,6 @@ def test_a_fault_is_in_its_own_case_only(case: VerificationCase) -> None:
 
 
 def test_a_fault_that_no_check_can_see_is_reported_as_such(case: VerificationCase, baseline: dict[str, bool]) -> None:
-    detection = inject(Fault("none", "nothing at all", "mean_power"), case, baseline)
+    detection = inject(Fault("none", "nothing at all", ("mean_power",)), case, baseline)
     assert not detection.caught
     assert detection.as_json()["check"] is None

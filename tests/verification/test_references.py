@@ -4,7 +4,7 @@ import numpy as np
 
 import fes_mj
 from fes_mj.verification.case import VerificationCase
-from fes_mj.verification.references import differences, exact_curves
+from fes_mj.verification.references import differences, exact_curves, massless_difference
 from fes_mj.verification.suite import servo_rounding
 
 
@@ -13,9 +13,11 @@ def _case(design: fes_mj.Design, moments: fes_mj.JointMoments) -> VerificationCa
 
 
 def test_exact_methods_agree_to_rounding(design: fes_mj.Design, moments: fes_mj.JointMoments) -> None:
-    for curves in exact_curves(_case(design, moments)).values():
-        assert len(curves) == 3
+    case = _case(design, moments)
+    for family, curves in exact_curves(case).items():
+        assert len(curves) == (2 if family == "massless" else 3)
         assert max(differences(curves).values()) < 1e-12
+    assert massless_difference(case) < 1e-12
 
 
 def test_massive_methods_see_masses(design: fes_mj.Design, moments: fes_mj.JointMoments) -> None:
