@@ -10,7 +10,7 @@ from dataclasses import replace
 from typing import Any, NamedTuple
 
 from fes_mj.common.checks import Check, definitions
-from fes_mj.common.errors import AssemblyError
+from fes_mj.common.errors import InputError
 from fes_mj.linkage.design import Design
 from fes_mj.verification.case import VerificationCase
 from fes_mj.verification.suite import FULL, QUICK, Stage, refinement_checks, ride_checks, verify
@@ -92,7 +92,7 @@ class Detection(NamedTuple):
 def inject(fault: Fault, case: VerificationCase, baseline: Mapping[str, bool]) -> Detection:
     """Run the suite on a case with one fault in it. baseline: check name -> whether it passes without."""
     failed: list[Check] = []
-    with suppress(AssemblyError):  # `loop_closure` has noticed before the model could be built
+    with suppress(InputError):  # of a design that is refused; the checks of its geometry have noticed before
         failed += (
             check for check in verify(fault.put_into(case), fault.stages) if not check.ok and baseline.get(check.name)
         )
