@@ -8,7 +8,7 @@ import numpy as np
 
 from fes_mj.common.arrays import FloatArray
 from fes_mj.linkage.design import Design
-from fes_mj.linkage.legs import delayed, side_by_side
+from fes_mj.linkage.legs import LEGS, delayed
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.statics.characteristics import power_characteristics
 from fes_mj.statics.turn import TURN_POINTS, QuasiStatic, difference_sd, quasi_static
@@ -47,7 +47,7 @@ class LegTurns:
     def power(self) -> FloatArray:
         """Crank power of all legs over the right crank's angle, W, shape (n,)."""
         each = self.turns * (self.legs // len(self.turns))
-        shifted = [delayed(turn.power, leg.lag) for turn, leg in zip(each, side_by_side(self.legs), strict=True)]
+        shifted = [delayed(turn.power, leg.lag) for turn, leg in zip(each, LEGS[self.legs], strict=True)]
         return np.asarray(np.sum(shifted, axis=0))
 
     def ratio(self, other: "LegTurns") -> tuple[float, float | None]:
