@@ -15,7 +15,7 @@ from fes_mj.moments.joint_moments import COLUMNS
 from fes_mj.moments.samples import moments_of
 from fes_mj.paper.evidence import load_evidence, of_group
 from fes_mj.paper.reconstruction import reconstruct
-from fes_mj.paper.statements import told
+from fes_mj.paper.statements import allowed_curves
 
 FOLDER = DATA / "moments"
 CURVES = 1000  # standard deviations are known to 2 %, means to 3 % of one
@@ -27,7 +27,7 @@ def main() -> None:
     recovered = reconstruct(evidence)
     print(f"length {recovered.hyperparameters.length:g}, amplitude {recovered.hyperparameters.amplitude:g} N m")
     for group in recovered.posteriors:
-        curves, share = told(of_group(evidence, group), group, recovered.hyperparameters, CURVES)
+        curves, share = allowed_curves(of_group(evidence, group), group, recovered.hyperparameters, CURVES)
         print(f"{group}: {100 * share:.2f} % of the curves fulfil what the text says of the figures")
         write(curves.round(DIGITS), FOLDER / f"{group}.csv")
 

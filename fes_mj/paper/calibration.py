@@ -15,8 +15,7 @@ from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.moments.uncertainty import power_weights
 from fes_mj.paper.captions import captioned
 from fes_mj.paper.evidence import Evidence, of_group
-from fes_mj.paper.known import Known
-from fes_mj.paper.left_out import rms, scores
+from fes_mj.paper.known import Known, rms, scores
 from fes_mj.paper.reconstruction import Hyperparameters, Posterior, System, condition, most_likely
 from fes_mj.paper.statements import allowed_share
 
@@ -24,11 +23,11 @@ from fes_mj.paper.statements import allowed_share
 def left_out_table(known: Known) -> Table:
     """Printed powers predicted without themselves, by the numbers alone and with the text."""
     rows = []
-    for each in known.predictions:
-        said, (numbers, text) = each.row.value, each.scores
-        percent = 100 * (each.numbers[0] / said - 1)
-        names = (each.row.group, each.row.design.upper(), each.title)
-        rows.append((*names, said, *each.numbers, percent, numbers, *each.text, text))
+    for left in known.predictions:
+        said, (numbers, text) = left.row.value, left.scores
+        percent = 100 * (left.numbers[0] / said - 1)
+        names = (left.row.group, left.row.design.upper(), left.title)
+        rows.append((*names, said, *left.numbers, percent, numbers, *left.text, text))
     return captioned("left_out", rows)
 
 
@@ -36,15 +35,15 @@ def calibration_table(known: Known) -> Table:
     """Root mean square of the scores, by group and over both."""
     rows = []
     for title, groups in (*((group, (group,)) for group in GROUPS), ("both", GROUPS)):
-        some = np.array([each.scores for each in known.predictions if each.row.group in groups])
-        rows.append((title, len(some), *rms(some).tolist()))
+        of_groups = np.array([left.scores for left in known.predictions if left.row.group in groups])
+        rows.append((title, len(of_groups), *rms(of_groups).tolist()))
     return captioned("calibration", rows)
 
 
-def sensitivity_table(known: Known, rounding: dict[tuple[str, str], FloatArray]) -> Table:
+def sensitivity_table(known: Known) -> Table:
     """The prior chosen otherwise: likelihood, scores, what the text allows, and D1's gain over the TRT.
 
-    rounding: by design and group, powers within the rounding of Table 2, of which the last case takes its errors.
+    The last case takes its errors from the powers within the rounding of Table 2.
     """
     chosen = known.hyperparameters
     data = {group: of_group(known.evidence, group) for group in GROUPS}
@@ -55,10 +54,10 @@ def sensitivity_table(known: Known, rounding: dict[tuple[str, str], FloatArray])
     cases = [(title, data, dict.fromkeys(GROUPS, prior)) for title, prior in priors.items()]
     apart = {group: most_likely([System.of(rows)]) for group, rows in data.items()}
     cases.append(("a prior for each group", data, apart))
-    rounded = {group: [_rounded(row, rounding) for row in rows] for group, rows in data.items()}
+    rounded = {group: [_rounded(row, known.rounding) for row in rows] for group, rows in data.items()}
     common = most_likely([System.of(rows) for rows in rounded.values()])
     cases.append(("six-bars' errors by their rounding", rounded, dict.fromkeys(GROUPS, common)))
-    return captioned("sensitivity", [_case(*each) for each in cases], group=GROUPS)
+    return captioned("sensitivity", [_case(*case) for case in cases], group=GROUPS)
 
 
 def _rounded(row: Evidence, rounding: dict[tuple[str, str], FloatArray]) -> Evidence:
@@ -75,14 +74,14 @@ def _case(title: str, data: dict[str, list[Evidence]], priors: dict[str, Hyperpa
         for name in ("length", "amplitude")
     ]
     likelihood = sum(System.of(rows).log_likelihood(prior) for _, rows, prior in pairs)
-    found = [float(rms(scores(rows, prior))) for _, rows, prior in pairs]
+    misses = [float(rms(scores(rows, prior))) for _, rows, prior in pairs]
     shares = [100 * allowed_share(rows, group, prior) for group, rows, prior in pairs]
-    return (title, *shape, likelihood, *found, *shares, *(_gain(condition(rows, prior)) for _, rows, prior in pairs))
+    return (title, *shape, likelihood, *misses, *shares, *(_gain(condition(rows, prior)) for _, rows, prior in pairs))
 
 
 def _gain(posterior: Posterior) -> str:
     """D1's power per the TRT's with its standard deviation, to first order."""
     designs = (load_design(name) for name in ("d1", "trt"))
-    d1, trt = (power_weights(solve(each), each.linkage.cadence, PAPER_TRICYCLE) for each in designs)
+    d1, trt = (power_weights(solve(design), design.linkage.cadence, PAPER_TRICYCLE) for design in designs)
     ratio = d1 @ posterior.mean / (trt @ posterior.mean)
     return f"{ratio:.2f} +- {posterior.predict(d1 - ratio * trt)[1] / (trt @ posterior.mean):.2f}"

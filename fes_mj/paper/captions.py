@@ -28,5 +28,10 @@ def figure_section(name: str) -> str:
     return f"## {caption['title']}\n\n![{caption['title']}](figures/{name}.png)\n\n{caption['note']}\n"
 
 
+def page_title(name: str) -> str:
+    """Of a page of results, by its file's name."""
+    return str(_captions().section("page").content[name])
+
+
 def _captions() -> Section:
     return read_toml(DATA / "captions.toml", "captions")

@@ -28,7 +28,7 @@ CASES = {
 }
 FREE, FULL = (next(iter(CASES)), [*CASES][-1])
 GAINS = (1.25, 1.5, 2.0)  # power per the TRT's
-STEPS = len(DESIGNS) * len(GROUPS)  # how often `study` calls `done`
+STEPS = len(DESIGNS) * len(GROUPS)  # how often `draw_all` calls `done`
 
 
 class Drawn(NamedTuple):
@@ -42,7 +42,7 @@ class Drawn(NamedTuple):
 Budgets = dict[tuple[str, str], Drawn]
 
 
-def study(static: dict[tuple[str, str], QuasiStatic], done: Callable[[], None]) -> Budgets:
+def draw_all(static: dict[tuple[str, str], QuasiStatic], done: Callable[[], None]) -> Budgets:
     """By design and group, on the same draws of whatever designs share. Raises MissingPartError without SALib."""
     found = {}
     for key, result in static.items():

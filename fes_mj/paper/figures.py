@@ -18,8 +18,7 @@ from fes_mj.moments.joint_moments import GROUPS
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.moments.uncertainty import instant_power_weights
 from fes_mj.paper.budget_figure import budget_figure
-from fes_mj.paper.known import STAGES, Known
-from fes_mj.paper.left_out import rms
+from fes_mj.paper.known import BASES, Known, rms
 from fes_mj.paper.printed import SIX_BARS
 from fes_mj.paper.reconstruction import Posterior
 from fes_mj.paper.riding import Riding
@@ -31,11 +30,11 @@ from fes_mj.viewing.people import population_figure
 _TURN = np.radians(np.arange(0.0, 360.5, 1.0))
 
 
-def moments_over_crank(runs: Runs, known: Known) -> Figure:
+def moments_over_crank(runs: Runs) -> Figure:
     """Figure 1: recovered joint moments over the TRT's crank angle, before and after the text."""
     figure, axes = _grid(2, 2, (7.2, 5.2))
     top = PAPER_TRICYCLE.top_dead_centre
-    for ax, group, title, posterior in _before_and_after(axes, known):
+    for ax, group, title, posterior in _before_and_after(axes, runs.known):
         for joint in JOINTS:
             _band(ax, np.degrees(_TURN), posterior.curve(joint, _TURN - top), joint, joint)
         ax.axvline(np.degrees(top), color=FAINT, lw=0.8, ls=":", label="top dead centre")
@@ -44,25 +43,25 @@ def moments_over_crank(runs: Runs, known: Known) -> Figure:
     return figure
 
 
-def power_of_the_trt(runs: Runs, known: Known) -> Figure:
+def power_of_the_trt(runs: Runs) -> Figure:
     """Figure 4: power of knee, hip and leg in the TRT over the turn, before and after the text."""
     figure, axes = _grid(3, 2, (7.2, 6.8), sharey="row", height_ratios=(2, 2, 1))
-    _powers(axes, runs, known, "trt")
+    _powers(axes, runs, "trt")
     _legend_below(figure, axes)
     return figure
 
 
-def moments_over_joint_angle(runs: Runs, known: Known) -> Figure:
+def moments_over_joint_angle(runs: Runs) -> Figure:
     """Figure 5: the torque maps, extension and flexion apart, before and after the text."""
     figure, axes = _grid(2, 2, (7.2, 5.4))
-    for ax, group, title, posterior in _before_and_after(axes, known):
+    for ax, group, title, posterior in _before_and_after(axes, runs.known):
         _maps(ax, posterior, PAPER_TRICYCLE.ranges.items())
         _label(ax, f"{group.upper()}, {title}", "joint angle, deg", "joint moment, N m")
     _legend_below(figure, axes, columns=4)
     return figure
 
 
-def design_space(runs: Runs, known: Known) -> Figure:
+def design_space(runs: Runs) -> Figure:
     """Figure 10: where crank centres and rocker pivots lie."""
     figure, axes = _grid(1, 1, (6.0, 3.4))
     (ax,) = axes.flat
@@ -84,11 +83,11 @@ def design_space(runs: Runs, known: Known) -> Figure:
     return figure
 
 
-def truncated_maps(runs: Runs, known: Known) -> Figure:
+def truncated_maps(runs: Runs) -> Figure:
     """Figure 11: the part of the maps that R2 and D1 use, with the jumps at its ends; limits as in Figure 5."""
     figure, axes = _grid(2, 2, (7.2, 5.4))
     for row, name in zip(axes, ("r2", "d1"), strict=True):
-        for ax, (group, posterior) in zip(row, known.text.posteriors.items(), strict=True):
+        for ax, (group, posterior) in zip(row, runs.known.text.posteriors.items(), strict=True):
             angles = runs.static[name, group].joint_angle
             _maps(ax, posterior, ((joint, (angle.min(), angle.max())) for joint, angle in angles.items()))
             _label(ax, f"{name.upper()}, {group.upper()}", "joint angle, deg", "joint moment, N m")
@@ -98,16 +97,16 @@ def truncated_maps(runs: Runs, known: Known) -> Figure:
     return figure
 
 
-def power_of_r2_and_d1(runs: Runs, known: Known) -> Figure:
+def power_of_r2_and_d1(runs: Runs) -> Figure:
     """Figure 12: power of R2 and D1 over the turn, both groups, before and after the text."""
     figure, axes = _grid(6, 2, (7.2, 8.2), sharey="row", height_ratios=(2, 2, 1) * 2)
     for rows, name in zip((axes[:3], axes[3:]), ("r2", "d1"), strict=True):
-        _powers(rows, runs, known, name)
+        _powers(rows, runs, name)
     _legend_below(figure, axes)
     return figure
 
 
-def d1_to_scale(runs: Runs, known: Known) -> Figure:
+def d1_to_scale(runs: Runs) -> Figure:
     """Figure 13: D1 and a leg to scale at one crank angle, with the paths of knee, pedal and crank pin."""
     figure, axes = _grid(1, 1, (7.2, 4.2))
     (ax,) = axes.flat
@@ -122,7 +121,7 @@ def d1_to_scale(runs: Runs, known: Known) -> Figure:
     return figure
 
 
-def smoothness(runs: Runs, known: Known) -> Figure:
+def smoothness(runs: Runs) -> Figure:
     """What the paper lacks: power with segment masses, one leg and two, beside the quasi-static curve."""
     names = ("trt", "r2", "d1")
     figure, axes = _grid(len(names), 2, (7.2, 7.2), sharey="row")
@@ -139,18 +138,18 @@ def smoothness(runs: Runs, known: Known) -> Figure:
     return figure
 
 
-def scores(runs: Runs, known: Known) -> Figure:
+def scores(runs: Runs) -> Figure:
     """Printed powers predicted without themselves, in standard deviations: are the stated errors right?"""
     figure, axes = _grid(1, 2, (7.2, 3.4))
-    for number, (ax, title) in enumerate(zip(axes.flat, STAGES, strict=True)):
+    for number, (ax, title) in enumerate(zip(axes.flat, BASES, strict=True)):
         for group, marker, colour in zip(GROUPS, "os", ("knee", "hip"), strict=True):
-            some = [each for each in known.predictions if each.row.group == group]
-            values = np.array([each.scores[number] for each in some])
+            rows = [left for left in runs.known.predictions if left.row.group == group]
+            values = np.array([left.scores[number] for left in rows])
             label = f"{group.upper()}, rms {rms(values):.2f}"
-            ax.plot(values, range(len(some)), marker, color=COLOURS[colour], label=label)
+            ax.plot(values, range(len(rows)), marker, color=COLOURS[colour], label=label)
         for sd in (1, 2):
             ax.axvspan(-sd, sd, color="0.5", alpha=0.12, lw=0)
-        names = [each.row.design.upper() + " and 15 W" * (each.title != "itself") for each in some]
+        names = [left.row.design.upper() + " and 15 W" * (left.title != "itself") for left in rows]
         ax.set(yticks=range(len(names)), yticklabels=names, xlim=(-3, 3), ylim=(len(names) + 0.8, -0.5))
         ax.axvline(0, color="black", lw=0.7)
         ax.set_title(title, loc="left", fontsize=9, weight="bold")
@@ -160,31 +159,30 @@ def scores(runs: Runs, known: Known) -> Figure:
     return figure
 
 
-def who_can_ride(runs: Runs, known: Known) -> Figure:
+def who_can_ride(runs: Runs) -> Figure:
     """Power over the thighs and shanks of people, with the seat as drawn and moved."""
     return population_figure([*runs.people.values()])
 
 
-def error_budget(runs: Runs, known: Known) -> Figure:
+def error_budget(runs: Runs) -> Figure:
     """Who is to blame for the error of each power, and how probable each gain is."""
     return budget_figure(runs.budgets)
 
 
-def riding(runs: Runs, known: Known) -> Figure:
+def riding(runs: Runs) -> Figure:
     """Speed on the flat and slope climbed, fixed gear and freewheel, with the scatter of the muscles drawn."""
     figure, axes = _grid(1, 3, (7.2, 3.0), sharey=False)
-    for number, (ax, (title, of)) in enumerate(zip(axes.flat, RIDING.items(), strict=True)):
+    for ax, (title, values_of) in zip(axes.flat, RIDING.items(), strict=True):
         for row, (group, transmission) in enumerate(product(GROUPS, TRANSMISSIONS)):
-            some = [each for each in runs.rides if (each.group, each.transmission) == (group, transmission)]
-            values = [[np.nan if value is None else value for value in of(each)] for each in some]
-            places = np.arange(len(some)) + 0.18 * (row - 1.5)
-            best, drawn = np.array([each[0] for each in values]), np.array([each[1:] for each in values])
+            rides = [ride for ride in runs.rides if (ride.group, ride.transmission) == (group, transmission)]
+            values = np.array([values_of(ride) for ride in rides], float)  # None becomes NaN
+            places = np.arange(len(rides)) + 0.18 * (row - 1.5)
+            best, drawn = values[:, 0], values[:, 1:]
             look = {"color": COLOURS["knee" if group == GROUPS[0] else "hip"], "ms": 5}
             face = look["color"] if transmission == "fixed" else "white"
             ax.plot(np.repeat(places, drawn.shape[1]), drawn.ravel(), ".", color=look["color"], ms=2, alpha=0.5)
-            label = f"{group.upper()}, {transmission}"
-            ax.plot(places, best, "o", markerfacecolor=face, label=label if number == len(RIDING) - 1 else None, **look)
-        ax.set(xticks=range(len(some)), xticklabels=[each.design.name.upper() for each in some])
+            ax.plot(places, best, "o", markerfacecolor=face, label=f"{group.upper()}, {transmission}", **look)
+        ax.set(xticks=range(len(rides)), xticklabels=[ride.design.name.upper() for ride in rides])
         ax.set_title(title, loc="left", fontsize=9, weight="bold")
         ax.axhline(0, color="black", lw=0.7)
     _legend_below(figure, axes, 4)
@@ -193,12 +191,12 @@ def riding(runs: Runs, known: Known) -> Figure:
 
 # Title -> values of a Riding, the best known first.
 RIDING: dict[str, Callable[[Riding], list[float | None]]] = {
-    "speed on the flat, km/h": lambda one: [t.mean_speed and t.mean_speed / KMH for t in one.flat],
-    "start angles, % of a turn": lambda one: [100 * each.share for each in one.starts],
-    "slope climbed, %": lambda one: [None if each.slope is None else 100 * each.slope for each in one.starts],
+    "speed on the flat, km/h": lambda ride: [trace.mean_speed and trace.mean_speed / KMH for trace in ride.flat],
+    "start angles, % of a turn": lambda ride: [100 * starts.share for starts in ride.starts],
+    "slope climbed, %": lambda ride: [starts.slope and 100 * starts.slope for starts in ride.starts],
 }
 
-FIGURES: dict[str, Callable[[Runs, Known], Figure]] = {
+FIGURES: dict[str, Callable[[Runs], Figure]] = {
     "figure-01-moments-over-crank": moments_over_crank,
     "figure-04-power-of-the-trt": power_of_the_trt,
     "figure-05-moments-over-joint-angle": moments_over_joint_angle,
@@ -235,10 +233,11 @@ def _turn(ax: Axes, title: str, y: str = "crank power, W") -> None:
 
 def _legend_below(figure: Figure, axes: Any, columns: int = 3) -> None:
     """Of all that the axes show, each once."""
-    shown = [each for ax in axes.flat for each in zip(*ax.get_legend_handles_labels()[::-1], strict=True)]
-    entries = dict(reversed(shown))
-    labels = [*dict.fromkeys(label for label, _ in shown)]
-    figure.legend([entries[label] for label in labels], labels, loc="outside lower center", ncols=columns)
+    entries: dict[str, Any] = {}
+    for ax in axes.flat:
+        for handle, label in zip(*ax.get_legend_handles_labels(), strict=True):
+            entries.setdefault(label, handle)
+    figure.legend([*entries.values()], [*entries], loc="outside lower center", ncols=columns)
 
 
 def _band(ax: Axes, x: Any, curve: tuple[Any, Any], colour: str, label: str, style: str = "-") -> None:
@@ -262,15 +261,15 @@ def _maps(ax: Axes, posterior: Posterior, ranges: Iterable[tuple[str, tuple[floa
 
 
 def _before_and_after(axes: Any, known: Known) -> Iterator[tuple[Axes, str, str, Posterior]]:
-    """Each of the first 2 x 2 axes with group, stage in words and posterior: a row for each stage."""
-    for row, stage, title in zip(axes[:2], known.stages, STAGES, strict=True):
-        for ax, (group, posterior) in zip(row, stage.posteriors.items(), strict=True):
+    """Each of the first 2 x 2 axes with group, basis in words and posterior: a row for each basis."""
+    for row, (title, recovered) in zip(axes[:2], known.by_basis.items(), strict=True):
+        for ax, (group, posterior) in zip(row, recovered.posteriors.items(), strict=True):
             yield ax, group, title, posterior
 
 
-def _powers(axes: Any, runs: Runs, known: Known, name: str) -> None:
+def _powers(axes: Any, runs: Runs, name: str) -> None:
     """Quasi-static power of knee, hip and, with its sd, both; of the curves that ship MuJoCo's too, with residuals."""
-    for ax, group, title, posterior in _before_and_after(axes, known):
+    for ax, group, title, posterior in _before_and_after(axes, runs.known):
         static = runs.static[name, group]
         rows = instant_power_weights(static.motion, static.cadence, PAPER_TRICYCLE)
         for joint, start in zip(JOINTS, (0, TERMS), strict=True):

@@ -14,7 +14,6 @@ from fes_mj.moments.fourier import fourier
 from fes_mj.moments.joint_moments import GROUPS
 from fes_mj.moments.uncertainty import instant_power_weights, with_sd
 from fes_mj.paper.captions import captioned
-from fes_mj.paper.known import Known
 from fes_mj.paper.runs import Runs
 from fes_mj.statics.characteristics import extent, inactive_share
 from fes_mj.statics.turn import QuasiStatic
@@ -37,9 +36,9 @@ def size_table(runs: Runs) -> Table:
     return captioned("size", rows)
 
 
-def continuity_table(runs: Runs, known: Known) -> Table:
+def continuity_table(runs: Runs) -> Table:
     """Section 7.2: the jump of the torque map at each end of travel, and what smoothing it costs in mean power."""
-    rows, posteriors = [], known.text.posteriors
+    rows, posteriors = [], runs.known.text.posteriors
     for (name, group), result in runs.static.items():
         jumps = [with_sd(*posteriors[group].predict(weights), digits=1) for weights in jump_weights(result)]
         costs = [
@@ -49,12 +48,12 @@ def continuity_table(runs: Runs, known: Known) -> Table:
     return captioned("continuity", rows, width=[f"{width:g}" for width in WIDTHS])
 
 
-def distribution_table(runs: Runs, known: Known) -> Table:
+def distribution_table(runs: Runs) -> Table:
     """Section 7.3: how power is spread over the turn, by the joint moments alone: of the mean curves, and sampled."""
     rows = []
     for (name, group), result in runs.static.items():
-        each = instant_power_weights(result.motion, result.cadence, result.torque.reference)
-        sampled = distribution(known.text.curves[group] @ each.T)
+        weights = instant_power_weights(result.motion, result.cadence, result.torque.reference)
+        sampled = distribution(runs.known.text.curves[group] @ weights.T)
         cells = [
             (float(of_mean), with_sd(float(values.mean()), float(values.std()), digits))
             for of_mean, values, digits in zip(distribution(result.power), sampled, (1, 1, 1, 2), strict=True)
@@ -69,13 +68,13 @@ def distribution(power: FloatArray) -> tuple[FloatArray, ...]:
     return 100 * inactive_share(power), lowest, highest, highest / power.mean(axis=-1)
 
 
-def ranking_table(runs: Runs, known: Known) -> Table:
+def ranking_table(runs: Runs) -> Table:
     """A ranking with stated weights, and how much it depends on them."""
     results = {name: [runs.static[name, group] for group in GROUPS] for name in _by_design(runs)}
 
     def smoothing_loss(pair: list[QuasiStatic]) -> float:
         costs = (
-            known.text.posteriors[r.moments.name].predict(smoothing_weights(r, np.radians(5.0)))[0] / r.power_mean
+            runs.known.text.posteriors[r.moments.name].predict(smoothing_weights(r, np.radians(5.0)))[0] / r.power_mean
             for r in pair
         )
         return -float(np.mean([*costs]))

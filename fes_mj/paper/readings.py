@@ -47,13 +47,21 @@ def readings() -> list[Reading]:
     ]
 
 
-def readings_table(done: Callable[[], None]) -> Table:
-    """Every reading: does a point of the rounding box fit Table 1, at which cost, or how far does the best one miss."""
-    rows = []
+STEPS = len(readings())  # how often `read_all` calls `done`
+
+
+def read_all(done: Callable[[], None]) -> dict[str, dict[str, str]]:
+    """By reading and design: does a point of the rounding box fit Table 1, at which cost, or by how much none does."""
+    outcomes = {}
     for reading in readings():
-        outcome = dict(_outcomes(reading))
-        rows.append((reading.title, *(outcome.get(name, "as chosen") for name in SIX_BARS)))
+        outcomes[reading.title] = dict(_outcomes(reading))
         done()
+    return outcomes
+
+
+def readings_table(outcomes: dict[str, dict[str, str]]) -> Table:
+    """The outcome of every reading."""
+    rows = [(title, *(of.get(name, "as chosen") for name in SIX_BARS)) for title, of in outcomes.items()]
     return captioned("readings", rows, design=[name.upper() for name in SIX_BARS])
 
 

@@ -2,26 +2,16 @@
 
 import numpy as np
 
-from fes_mj.common.arrays import FloatArray
 from fes_mj.common.markdown import Table
-from fes_mj.linkage.design import Design
-from fes_mj.linkage.design_file import load_design
-from fes_mj.linkage.kinematics import solve
-from fes_mj.linkage.variables import LENGTHS, replaced
 from fes_mj.moments.fourier import fourier
 from fes_mj.moments.joint_moments import GROUPS
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
-from fes_mj.moments.uncertainty import power_weights, with_sd
+from fes_mj.moments.uncertainty import with_sd
 from fes_mj.paper.captions import captioned
 from fes_mj.paper.evidence import functional, of_group
-from fes_mj.paper.identification import LENGTH_ROUNDING, inside_rounding
-from fes_mj.paper.known import Known
-from fes_mj.paper.left_out import rms
-from fes_mj.paper.printed import SIX_BARS
+from fes_mj.paper.known import Known, rms
 from fes_mj.paper.reconstruction import condition
 from fes_mj.paper.statements import load_statements
-
-_SEED = 2022
 
 
 def evidence_table(known: Known) -> Table:
@@ -49,13 +39,13 @@ def evidence_table(known: Known) -> Table:
 
 def statement_table(known: Known) -> Table:
     """What the text says of the figures beside curves of the numbers alone, and those that fulfil all of it."""
-    rows, (numbers, text) = [], (stage.curves for stage in known.stages)
+    rows, numbers, text = [], known.numbers.curves, known.text.curves
     for group in GROUPS:
-        for each in load_statements(group):
-            values = [each.value(curves[group]) for curves in (numbers, text)]
+        for statement in load_statements(group):
+            values = [statement.value(curves[group]) for curves in (numbers, text)]
             cells = [with_sd(float(value.mean()), float(value.std())) for value in values]
-            holds = 100 * float(np.mean(each.holds(numbers[group])))
-            rows.append((group, each.name, each.bounds, cells[0], holds, cells[1]))
+            holds = 100 * float(np.mean(statement.holds(numbers[group])))
+            rows.append((group, statement.name, statement.bounds, cells[0], holds, cells[1]))
     return captioned("statement", rows)
 
 
@@ -67,32 +57,15 @@ def knee_table(known: Known) -> Table:
         weights = np.concatenate([moment, 0 * moment])
         name = "extending" if direction > 0 else "flexing"
         for group in GROUPS:
-            cells = (with_sd(*stage.posteriors[group].predict(weights), 1) for stage in known.stages)
+            cells = (with_sd(*recovered.posteriors[group].predict(weights), 1) for recovered in known.by_basis.values())
             rows.append((name, group, said, *cells, "used" if group == "p1p2" else "not used"))
     return captioned("knee", rows)
 
 
-def rounding_spread(known: Known, batch: int = 10_000, wanted: int = 200) -> dict[tuple[str, str], FloatArray]:
-    """By design and group: change of power, W, over linkages inside Table 2's rounding that move as Table 1 says."""
-    spread: dict[tuple[str, str], FloatArray] = {}
-    random = np.random.default_rng(_SEED)
-    for name in SIX_BARS:
-        drawn = inside_rounding(name, dict.fromkeys(LENGTHS, LENGTH_ROUNDING), random, wanted, batch)
-        printed, rows = load_design(name, "printed"), zip(*drawn.values(), strict=True)
-        weights = np.array([_weights(replaced(printed, dict(zip(drawn, row, strict=True)))) for row in rows])
-        for group, posterior in known.text.posteriors.items():
-            spread[name, group] = (weights - _weights(load_design(name))) @ posterior.mean
-    return spread
-
-
-def rounding_table(spread: dict[tuple[str, str], FloatArray]) -> Table:
+def rounding_table(known: Known) -> Table:
     """Spread of each six-bar's power over the rounding of its dimensions."""
     rows = [
         (name.upper(), group, float(rms(change)), float(change.mean()), len(change))
-        for (name, group), change in spread.items()
+        for (name, group), change in known.rounding.items()
     ]
     return captioned("rounding", rows)
-
-
-def _weights(design: Design) -> FloatArray:
-    return power_weights(solve(design), design.linkage.cadence, PAPER_TRICYCLE)

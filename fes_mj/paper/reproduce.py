@@ -27,9 +27,7 @@ from fes_mj.paper import (
     tables,
     work_shares,
 )
-from fes_mj.paper.captions import figure_section
-from fes_mj.paper.evidence import load_evidence
-from fes_mj.paper.known import Known, known
+from fes_mj.paper.captions import figure_section, page_title
 from fes_mj.paper.runs import RUNS, Runs, run_all
 
 if TYPE_CHECKING:
@@ -45,7 +43,7 @@ def steps() -> int:
     """How often reproduce calls `done`."""
     from fes_mj.paper.figures import FIGURES
 
-    return RUNS + len(readings.readings()) + len(FIGURES)
+    return RUNS + len(FIGURES)
 
 
 def reproduce(folder: Path, done: Done, svg: bool = False) -> list[Path]:
@@ -56,20 +54,21 @@ def reproduce(folder: Path, done: Done, svg: bool = False) -> list[Path]:
     """
     from fes_mj.paper.figures import FIGURES
 
-    facts, runs = known(load_evidence()), run_all(done)
-    pages = _pages(facts, runs, done)
+    runs = run_all(done)
+    pages = _pages(runs)
     contents: dict[Path, str | bytes] = {
-        folder / name: _page(title, (table.markdown() for table in page)) for name, (title, page) in pages.items()
+        folder / f"{name}.md": _page(page_title(name), (table.markdown() for table in tables))
+        for name, tables in pages.items()
     }
     contents[folder / "figures.md"] = figures_page()
     for name, draw in FIGURES.items():
-        contents |= _figure(folder / "figures" / name, partial(draw, runs, facts), svg)
+        contents |= _figure(folder / "figures" / name, partial(draw, runs), svg)
         done()
-    record = {"provenance": provenance(inputs(), ["matplotlib"]), "hyperparameters": facts.hyperparameters.__dict__}
-    record["timestep_s"] = {" ".join(map(str, run)): case.simulation.timestep for run, case in runs.dynamic.items()}
-    record |= {
-        name.removesuffix(".md"): {table.title: table.records() for table in contents}
-        for name, (_, contents) in pages.items()
+    record = {
+        "provenance": provenance(inputs(), ["matplotlib"]),
+        "hyperparameters": vars(runs.known.hyperparameters),
+        "timestep_s": {" ".join(map(str, run)): case.simulation.timestep for run, case in runs.dynamic.items()},
+        **{name: {table.title: table.records() for table in tables} for name, tables in pages.items()},
     }
     contents[folder / RECORD] = json_text(record)
     (folder / "figures").mkdir(exist_ok=True)
@@ -77,79 +76,58 @@ def reproduce(folder: Path, done: Done, svg: bool = False) -> list[Path]:
     return [*contents]
 
 
-def _pages(facts: Known, runs: Runs, done: Done) -> dict[str, tuple[str, list[Table]]]:
-    """Title and tables of every page by file name."""
-    spread = recovery.rounding_spread(facts)
+def _pages(runs: Runs) -> dict[str, list[Table]]:
+    """Tables of every page by its name."""
+    facts, rides, budgets = runs.known, runs.rides, runs.budgets
     return {
-        "identification.md": (
-            "Dimensions behind the paper's Table 2",
-            [readings.dimensions_table(), readings.ranges_table(), readings.readings_table(done)],
-        ),
-        "moments.md": (
-            "Joint moments recovered from the paper's powers",
-            [
-                recovery.evidence_table(facts),
-                calibration.left_out_table(facts),
-                calibration.calibration_table(facts),
-                calibration.sensitivity_table(facts, spread),
-                recovery.statement_table(facts),
-                recovery.knee_table(facts),
-                work_shares.share_table(facts),
-                recovery.rounding_table(spread),
-            ],
-        ),
-        "powers.md": (
-            "Powers, gains and joint ranges beside the paper's",
-            [
-                tables.power_table(runs),
-                tables.gain_table(runs),
-                tables.motion_table(runs),
-                readings.ranges_table(),
-                tables.check_table(runs),
-            ],
-        ),
-        "metrics.md": (
-            "The criteria of Section 7 as numbers",
-            [
-                metrics.size_table(runs),
-                metrics.continuity_table(runs, facts),
-                metrics.distribution_table(runs, facts),
-                metrics.ranking_table(runs, facts),
-            ],
-        ),
-        "people.md": (
-            "Who can ride: people instead of the paper's rider",
-            [people.percentile_table(), people.population_table(runs)],
-        ),
-        "riding.md": (
-            "How the paper's designs ride",
-            [
-                table(runs.rides)
-                for table in (riding.speed_table, riding.start_table, riding.gear_table, riding.transmission_table)
-            ],
-        ),
-        "gains.md": (
-            "How much of the gain is real",
-            [
-                *(table(runs) for table in (gains.speed_table, gains.hill_table, gains.smoothness_table)),
-                stationarity.stationarity_table(),
-            ],
-        ),
-        "error_budget.md": (
-            "One error budget",
-            [
-                error_budget.prior_table(),
-                *(
-                    table(runs.budgets)
-                    for table in (
-                        error_budget.contribution_table,
-                        error_budget.share_table,
-                        error_budget.probability_table,
-                        error_budget.better_table,
-                    )
-                ),
-            ],
-        ),
+        "identification": [
+            readings.dimensions_table(),
+            readings.ranges_table(),
+            readings.readings_table(runs.readings),
+        ],
+        "moments": [
+            recovery.evidence_table(facts),
+            calibration.left_out_table(facts),
+            calibration.calibration_table(facts),
+            calibration.sensitivity_table(facts),
+            recovery.statement_table(facts),
+            recovery.knee_table(facts),
+            work_shares.share_table(facts),
+            recovery.rounding_table(facts),
+        ],
+        "powers": [
+            tables.power_table(runs),
+            tables.gain_table(runs),
+            tables.motion_table(runs),
+            readings.ranges_table(),
+            tables.check_table(runs),
+        ],
+        "metrics": [
+            metrics.size_table(runs),
+            metrics.continuity_table(runs),
+            metrics.distribution_table(runs),
+            metrics.ranking_table(runs),
+        ],
+        "people": [people.percentile_table(), people.population_table(runs)],
+        "riding": [
+            riding.speed_table(rides),
+            riding.start_table(rides),
+            riding.gear_table(rides),
+            riding.transmission_table(rides),
+        ],
+        "gains": [
+            gains.speed_table(runs),
+            gains.hill_table(runs),
+            gains.smoothness_table(runs),
+            stationarity.stationarity_table(),
+        ],
+        "error_budget": [
+            error_budget.prior_table(),
+            error_budget.contribution_table(budgets),
+            error_budget.share_table(budgets),
+            error_budget.probability_table(budgets),
+            error_budget.better_table(budgets),
+        ],
     }
 
 
@@ -173,7 +151,7 @@ def figures_page() -> str:
     """The page with every figure and its caption."""
     from fes_mj.paper.figures import FIGURES
 
-    return _page("Figures", map(figure_section, FIGURES))
+    return _page(page_title("figures"), map(figure_section, FIGURES))
 
 
 def _page(title: str, sections: Iterable[str]) -> str:

@@ -33,7 +33,7 @@ RATIOS = np.geomspace(0.25, 4.0, 17)  # times the design's own gear ratio
 SLOPES = (0.0, 0.02)  # on which the best gear ratio is sought
 SEED = 2007
 THREADS = 2  # the compiled solver lets others run beside it
-STEPS = len(DESIGNS) * len(GROUPS)  # how often `study` calls `done`
+STEPS = len(DESIGNS) * len(GROUPS)  # how often `ride_all` calls `done`
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,7 +54,7 @@ class Riding:
     gears: dict[float, list[float]]
 
 
-def study(done: Callable[[], None]) -> list[Riding]:
+def ride_all(done: Callable[[], None]) -> list[Riding]:
     """All rides; without numba it takes hours."""
     found: list[Riding] = []
     for group in GROUPS:

@@ -12,19 +12,24 @@ from fes_mj.linkage.design_file import DESIGNS, load_design
 from fes_mj.moments.files import load_moments
 from fes_mj.moments.joint_moments import GROUPS
 from fes_mj.moments.torque_velocity import load_torque_velocity
-from fes_mj.paper import error_budget, riding
+from fes_mj.paper import error_budget, readings, riding
+from fes_mj.paper.evidence import load_evidence
+from fes_mj.paper.known import Known, known
 from fes_mj.statics.turn import QuasiStatic, quasi_static
 
-RUNS = (2 * len(GROUPS) + 1) * len(DESIGNS) + riding.STEPS + error_budget.STEPS  # simulations, populations, rides ...
+# Simulations, populations, rides ...
+RUNS = (2 * len(GROUPS) + 1) * len(DESIGNS) + riding.STEPS + error_budget.STEPS + readings.STEPS
 
 
 @dataclass(frozen=True)
 class Runs:
     """By (design, group): statics with identified and with printed dimensions (None where the print cannot turn), with
     Hill's torque-velocity relation, and the checked simulations by (design, group, legs). Who can ride, by design,
-    and how they ride. What each unknown contributes, by (design, group).
+    and how they ride. What each unknown contributes, by (design, group). What is known of the moments, and
+    what other readings of the paper come to.
     """
 
+    known: Known
     static: dict[tuple[str, str], QuasiStatic]
     printed: dict[tuple[str, str], QuasiStatic | None]
     hill: dict[tuple[str, str], QuasiStatic]
@@ -32,11 +37,12 @@ class Runs:
     people: dict[str, PopulationFit]
     rides: list[riding.Riding]
     budgets: error_budget.Budgets
+    readings: dict[str, dict[str, str]]
 
 
 def run_all(done: Callable[[], None]) -> Runs:
     """Solve and simulate everything; `done` is called RUNS times."""
-    runs = Runs({}, {}, {}, {}, {}, riding.study(done), {})
+    runs = Runs(known(load_evidence()), {}, {}, {}, {}, {}, riding.ride_all(done), {}, readings.read_all(done))
     moments = {group: load_moments(group) for group in GROUPS}
     for name in DESIGNS:
         for group in GROUPS:
@@ -52,7 +58,7 @@ def run_all(done: Callable[[], None]) -> Runs:
                 done()
         runs.people[name] = fit_population(load_design(name), moments[GROUPS[0]])
         done()
-    runs.budgets.update(error_budget.study(runs.static, done))
+    runs.budgets.update(error_budget.draw_all(runs.static, done))
     return runs
 
 

@@ -84,28 +84,30 @@ def load_statements(group: str) -> list[Statement]:
     return [Statement(**row) for row in rows if row["group"] == group]
 
 
-def told(rows: list[Evidence], group: str, hyperparameters: Hyperparameters, count: int) -> tuple[FloatArray, float]:
+def allowed_curves(
+    rows: list[Evidence], group: str, hyperparameters: Hyperparameters, count: int
+) -> tuple[FloatArray, float]:
     """Curves of one group that its evidence, these rows, and the text allow.
 
     Returns Fourier coefficients, N m, shape (count, 98), and the share of the evidence's curves that the text allows.
     Raises InputError where the two contradict each other: next to no curve of the evidence fulfils the statements.
     """
     kept: list[FloatArray] = []
-    drawn = found = 0
+    drawn = allowed = 0
     for curves in _batches(rows, group, hyperparameters):
         kept.append(curves)
-        drawn, found = drawn + _BATCH, found + len(curves)
-        if found >= count:
-            return np.concatenate(kept)[:count], found / drawn
+        drawn, allowed = drawn + _BATCH, allowed + len(curves)
+        if allowed >= count:
+            return np.concatenate(kept)[:count], allowed / drawn
         if drawn >= _MOST:
             break
-    raise InputError(f"{TEXT}: {found} of {drawn} curves fulfil what the text says of the figures of {group}")
+    raise InputError(f"{TEXT}: {allowed} of {drawn} curves fulfil what the text says of the figures of {group}")
 
 
 def allowed_share(rows: list[Evidence], group: str, hyperparameters: Hyperparameters, batches: int = 5) -> float:
     """Share of one group's curves under its evidence, these rows, that the text allows."""
-    some = islice(_batches(rows, group, hyperparameters), batches)
-    return sum(len(curves) for curves in some) / (batches * _BATCH)
+    allowed = islice(_batches(rows, group, hyperparameters), batches)
+    return sum(map(len, allowed)) / (batches * _BATCH)
 
 
 def _batches(rows: list[Evidence], group: str, hyperparameters: Hyperparameters) -> Iterator[FloatArray]:
@@ -123,5 +125,5 @@ def _rows(name: str, joint: str) -> FloatArray:
     """Power at _ANGLES per coefficient, of the leg or of one joint alone, W/(N m), shape (angles, 98)."""
     design = load_design(name)
     rows = instant_power_weights(solve(design, _ANGLES), design.linkage.cadence, PAPER_TRICYCLE)
-    counts = np.repeat([joint in ("", each) for each in JOINTS], TERMS)
+    counts = np.repeat([joint in ("", name) for name in JOINTS], TERMS)
     return np.asarray(rows * counts)

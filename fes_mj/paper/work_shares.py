@@ -13,10 +13,10 @@ from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.moments.uncertainty import with_sd
 from fes_mj.paper.captions import captioned
 from fes_mj.paper.evidence import own_leg_motion
-from fes_mj.paper.known import STAGES, Known
+from fes_mj.paper.known import BASES, Known
 from fes_mj.paper.statements import TEXT
 
-MUSCLES = {
+ACTIONS = {
     "knee extensors": ("knee", 1),
     "knee flexors": ("knee", -1),
     "hip extensors": ("hip", 1),
@@ -44,7 +44,7 @@ def work(curves: FloatArray, leg: float) -> dict[str, Work]:
     features = fourier(motion.crank_angle - PAPER_TRICYCLE.top_dead_centre)
     moments = PerJoint(*(part @ features.T for part in np.split(curves, 2, axis=1)))
     done = {}
-    for name, (joint, sign) in MUSCLES.items():
+    for name, (joint, sign) in ACTIONS.items():
         power = np.where(sign * moments[joint] > 0, moments[joint] * motion.joint_rate[joint], 0.0)
         done[name] = Work(np.maximum(power, 0).mean(axis=1), np.minimum(power, 0).mean(axis=1))
     return done
@@ -55,9 +55,11 @@ def shares(curves: FloatArray, leg: float, muscles: str) -> tuple[FloatArray, Fl
     and if it is all concentric work: concentric per concentric. Shapes (curves,).
     """
     done = work(curves, leg)
-    concentric, eccentric = (np.sum([getattr(each, kind) for each in done.values()], axis=0) for kind in Work._fields)
-    one = (eccentric, eccentric) if muscles == "eccentric" else (done[muscles].net, done[muscles].concentric)
-    return 100 * one[0] / (concentric + eccentric), 100 * one[1] / concentric
+    concentric, eccentric = (
+        np.sum([getattr(done_by, kind) for done_by in done.values()], axis=0) for kind in Work._fields
+    )
+    net, part = (eccentric, eccentric) if muscles == "eccentric" else (done[muscles].net, done[muscles].concentric)
+    return 100 * net / (concentric + eccentric), 100 * part / concentric
 
 
 def share_table(known: Known) -> Table:
@@ -65,11 +67,13 @@ def share_table(known: Known) -> Table:
     rows = []
     for said in read_toml(TEXT, "statements").content["share"]:
         group, cells = said["group"], []
-        counted = [shares(stage.curves[group], said["leg_m"], said["muscles"]) for stage in known.stages]
+        counted = [
+            shares(recovered.curves[group], said["leg_m"], said["muscles"]) for recovered in known.by_basis.values()
+        ]
         for reading in zip(*counted, strict=True):
-            cells += [with_sd(float(np.median(each)), _half_width(each), 0) for each in reading]
+            cells += [with_sd(float(np.median(values)), _half_width(values), 0) for values in reading]
         rows.append((group, said["muscles"], float(said["value"]), *cells))
-    readings = [f"{reading}, {stage}" for reading in ("net", "concentric") for stage in STAGES]
+    readings = [f"{reading}, {basis}" for reading in ("net", "concentric") for basis in BASES]
     return captioned("share", rows, reading=readings)
 
 

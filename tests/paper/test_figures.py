@@ -27,16 +27,16 @@ def facts() -> Known:
 
 
 @pytest.fixture(scope="module")
-def runs() -> Runs:
+def runs(facts: Known) -> Runs:
     """What the figures over a turn need."""
-    some = Runs(static={}, printed={}, hill={}, dynamic={}, people={}, rides=[], budgets={})
+    runs = Runs(facts, static={}, printed={}, hill={}, dynamic={}, people={}, rides=[], budgets={}, readings={})
     for name in ("trt", "r2", "d1"):
         for group in GROUPS:
             design, moments = fes_mj.load_design(name), fes_mj.load_moments(group)
-            some.static[name, group] = fes_mj.quasi_static(design, moments)
+            runs.static[name, group] = fes_mj.quasi_static(design, moments)
             for legs in (1, 2):
-                some.dynamic[name, group, legs] = fes_mj.Case(design, moments, legs=legs)
-    return some
+                runs.dynamic[name, group, legs] = fes_mj.Case(design, moments, legs=legs)
+    return runs
 
 
 @pytest.mark.long
@@ -49,8 +49,8 @@ def runs() -> Runs:
         "smoothness-with-masses",
     ],
 )
-def test_curves_over_a_turn_close(name: str, runs: Runs, facts: Known) -> None:
-    for axes in FIGURES[name](runs, facts).axes:
+def test_curves_over_a_turn_close(name: str, runs: Runs) -> None:
+    for axes in FIGURES[name](runs).axes:
         assert isinstance(axes, Axes)
         assert axes.get_xlim() == (0, 360)
         curves = [np.array(line.get_data(), float) for line in axes.lines if len(np.atleast_1d(line.get_xdata())) > 2]
@@ -62,11 +62,11 @@ def test_curves_over_a_turn_close(name: str, runs: Runs, facts: Known) -> None:
 
 
 @pytest.mark.long
-def test_residuals_are_those_of_the_checks(runs: Runs, facts: Known) -> None:
+def test_residuals_are_those_of_the_checks(runs: Runs) -> None:
     """The last row of Figure 4: nearly massless and with all masses, as `inverse_dynamics` and `massless_statics`."""
-    for axes, group in zip(FIGURES["figure-04-power-of-the-trt"](runs, facts).axes[-2:], GROUPS, strict=True):
+    for axes, group in zip(FIGURES["figure-04-power-of-the-trt"](runs).axes[-2:], GROUPS, strict=True):
         assert isinstance(axes, Axes)
-        checks = {each.name: each.value for each in runs.dynamic["trt", group, 1].checks}
+        checks = {check.name: check.value for check in runs.dynamic["trt", group, 1].checks}
         drawn = [np.array(line.get_ydata(), float)[:-1] for line in axes.lines if len(np.array(line.get_ydata())) > 2]
         rms = [float(np.sqrt(np.mean(curve**2))) for curve in drawn]
         assert rms == pytest.approx(

@@ -5,7 +5,7 @@ import pytest
 
 from fes_mj.moments.joint_moments import GROUPS
 from fes_mj.paper.evidence import functional, load_evidence, of_group
-from fes_mj.paper.left_out import LeftOut, left_out, rms, scores
+from fes_mj.paper.known import LeftOut, left_out, rms, scores
 from fes_mj.paper.reconstruction import Hyperparameters, choose_hyperparameters, condition
 
 

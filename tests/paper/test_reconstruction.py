@@ -20,7 +20,7 @@ from fes_mj.paper.reconstruction import (
     left_out_misses,
     reconstruct,
 )
-from fes_mj.paper.statements import told
+from fes_mj.paper.statements import allowed_curves
 
 
 @pytest.fixture(scope="module")
@@ -32,7 +32,7 @@ def posteriors() -> dict[str, Posterior]:
 def test_what_ships_is_what_evidence_and_text_give(group: str) -> None:
     """The tool's curves again. Rounding may carry one curve in a thousand over a bound of the text, not ten."""
     evidence = load_evidence()
-    curves, _ = told(of_group(evidence, group), group, choose_hyperparameters(evidence), 1000)
+    curves, _ = allowed_curves(of_group(evidence, group), group, choose_hyperparameters(evidence), 1000)
     shipped = sampled_coefficients(group)
     assert sum(np.abs(shipped - curve).max(axis=1).min() < 1e-3 for curve in curves) >= 990
 

@@ -30,7 +30,7 @@ def test_what_ships_fulfils_what_was_said(facts: Known) -> None:
 
 @pytest.mark.long
 def test_tables_of_calibration_agree(facts: Known) -> None:
-    chosen = sensitivity_table(facts, {}).records()[0]
+    chosen = sensitivity_table(facts).records()[0]
     by_group = {row["group"]: row for row in calibration_table(facts).records()}
     for group in GROUPS:
         assert chosen[f"rms of scores, {group}"] == pytest.approx(by_group[group]["rms, numbers alone"], rel=1e-6)

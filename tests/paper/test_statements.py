@@ -13,7 +13,7 @@ from fes_mj.moments.samples import moments_of, sampled_coefficients
 from fes_mj.paper import statements
 from fes_mj.paper.evidence import load_evidence, of_group
 from fes_mj.paper.reconstruction import choose_hyperparameters, condition, draw
-from fes_mj.paper.statements import QUANTITIES, Statement, load_statements, told
+from fes_mj.paper.statements import QUANTITIES, Statement, allowed_curves, load_statements
 from fes_mj.statics.turn import quasi_static
 
 TURN = np.radians(np.arange(0.0, 360.0, 2.0))
@@ -74,4 +74,4 @@ def test_text_that_contradicts_the_numbers_is_named(monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr(statements, "load_statements", lambda group: impossible)
     monkeypatch.setattr(statements, "_MOST", 20_000)
     with pytest.raises(InputError, match="0 of 20000 curves fulfil what the text says of the figures of p1p2"):
-        told(of_group(evidence, "p1p2"), "p1p2", choose_hyperparameters(evidence), 1)
+        allowed_curves(of_group(evidence, "p1p2"), "p1p2", choose_hyperparameters(evidence), 1)
