@@ -66,7 +66,7 @@ def test_what_is_linear_and_independent_adds_in_squares(outside: QuasiStatic) ->
 
 def test_together_every_realisation_comes_up_equally_often() -> None:
     rows = together(("one", "two"), 50, 3)
-    assert all(np.bincount(some).tolist() == [3] * 50 for some in rows.values())
+    assert all(np.bincount(numbers).tolist() == [3] * 50 for numbers in rows.values())
     assert not np.array_equal(rows["one"], rows["two"])
 
 
@@ -76,16 +76,16 @@ def test_together_every_realisation_comes_up_equally_often() -> None:
 def test_the_worse_a_thing_is_known_the_larger_its_contribution(
     monkeypatch: pytest.MonkeyPatch, unknown: str, key: str, values: tuple[float, ...]
 ) -> None:
-    result, found = static("r1", fes_mj.load_moments()), []
+    result, budgets = static("r1", fes_mj.load_moments()), []
     for value in values:
         monkeypatch.setitem(priors()[unknown], key, value)
         budget = error_budget(result, draws=100)
         assert budget is not None
-        found.append(budget)
-    alone = [each.by[unknown] for each in found]
+        budgets.append(budget)
+    alone = [budget.by[unknown] for budget in budgets]
     assert alone[0] == pytest.approx(0, abs=1e-12)
     assert 0 < alone[1] < alone[2]
-    assert {each.by[MASSES] for each in found} == {0.0}
+    assert {budget.by[MASSES] for budget in budgets} == {0.0}
 
 
 def test_probability_of_a_gain_is_the_normal_one_where_it_is_one() -> None:
@@ -93,7 +93,7 @@ def test_probability_of_a_gain_is_the_normal_one_where_it_is_one() -> None:
     moments = replace(fes_mj.load_moments("p1p3"), name="own")
     one, other = (static(name, moments) for name in ("d1", "trt"))
     rows = {MOMENTS: np.arange(4000)}
-    a, b = (UncertainPower(each, 4000).at(rows)[0] for each in (one, other))
+    a, b = (UncertainPower(leg, 4000).at(rows)[0] for leg in (one, other))
     for gain in (1.77, 1.8, 1.82):
         weights = one.power_weights - gain * other.power_weights
         assert moments.covariance is not None

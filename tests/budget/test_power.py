@@ -44,7 +44,7 @@ def test_nothing_drawn_is_the_mean_power(design: fes_mj.Design, moments: JointMo
 def test_one_realisation_of_everything_but_a_lag_is_what_the_solver_says(name: str, moments: JointMoments) -> None:
     power = uncertain(name, moments)
     drawn = power.drawn
-    values = {key: float(each[ROW[0]]) for part in (drawn.dimensions, drawn.legs) for key, each in part.items()}
+    values = {key: float(sample[ROW[0]]) for part in (drawn.dimensions, drawn.legs) for key, sample in part.items()}
     one = drawn.relations.taken(ROW)
     relation = TorqueVelocity(
         "one",
@@ -54,23 +54,23 @@ def test_one_realisation_of_everything_but_a_lag_is_what_the_solver_says(name: s
     )
     curves = replace(moments_of(drawn.coefficients[ROW[0]], "one"), torque_velocity=relation)
     solved = quasi_static(replaced(power.result.design, values), curves)
-    found = power.at(dict.fromkeys((MOMENTS, DIMENSIONS, SPEED, RIDER), ROW), [SPEED])
-    assert found[0, 0] == pytest.approx(solved.power_mean, abs=COARSE)
+    powers = power.at(dict.fromkeys((MOMENTS, DIMENSIONS, SPEED, RIDER), ROW), [SPEED])
+    assert powers[0, 0] == pytest.approx(solved.power_mean, abs=COARSE)
     free = quasi_static(solved.design, replace(curves, torque_velocity=None))
-    assert found[1, 0] == pytest.approx(free.power_mean, abs=COARSE)
+    assert powers[1, 0] == pytest.approx(free.power_mean, abs=COARSE)
 
 
 def answer(command: FloatArray, lag_angle: float) -> FloatArray:
     """Periodic solution of lag_angle dm/da + m = u, u linear between uniform angles: exact step by step, ten turns."""
     step = 2 * np.pi / len(command)
-    decay, found, moment = np.exp(-step / lag_angle), np.empty(len(command)), 0.0
+    decay, response, moment = np.exp(-step / lag_angle), np.empty(len(command)), 0.0
     for _ in range(10):
         for i, here in enumerate(command):
-            found[i] = moment
+            response[i] = moment
             slope = (command[(i + 1) % len(command)] - here) / step
             # the straight line is followed lag_angle behind
             moment = here + slope * (step - lag_angle) + (moment - here + slope * lag_angle) * decay
-    return found
+    return response
 
 
 @pytest.mark.parametrize("name", ["r1", "d1"])
@@ -81,12 +81,12 @@ def test_a_lag_is_the_answer_to_what_riding_commands(name: str, relation: str | 
     moments = replace(fes_mj.load_moments(), torque_velocity=hill)
     power = uncertain(name, moments)
     lag, cadence = float(power.drawn.lags[ROW[0], 0]), power.result.cadence
-    told, measured = drive(power.result.design, moments, lag), moments.measured_on.cadence
+    driven, measured = drive(power.result.design, moments, lag), moments.measured_on.cadence
     ahead = np.atan(cadence * lag) - np.atan(measured * lag)
     angle, total = np.linspace(0, 2 * np.pi, POINTS, endpoint=False), 0.0
     for joint in JOINTS:
-        command = np.interp(angle + ahead, angle, told.command[joint], period=2 * np.pi)
-        moment, rate = answer(command, cadence * lag), told.motion.joint_rate[joint]
+        command = np.interp(angle + ahead, angle, driven.command[joint], period=2 * np.pi)
+        moment, rate = answer(command, cadence * lag), driven.motion.joint_rate[joint]
         if hill:
             moment = moment * hill.factor(joint, np.sign(moment) * cadence * rate)
         total += cadence * float(np.mean(moment * rate))
@@ -103,15 +103,15 @@ def test_a_lag_costs_nothing_in_the_tricycle_of_the_measurement(moments: JointMo
 def test_what_does_not_turn_has_no_power() -> None:
     """R2 is 0.6 mm from where it cannot turn; every realisation is asked the way every command asks."""
     power = UncertainPower(quasi_static(fes_mj.load_design("r2"), fes_mj.load_moments()), 1000)
-    found, failed = power.at({DIMENSIONS: np.arange(1000)})[0], []
+    powers, failed = power.at({DIMENSIONS: np.arange(1000)})[0], []
     for row in range(1000):
-        values = {name: float(each[row]) for name, each in power.drawn.dimensions.items()}
+        values = {name: float(column[row]) for name, column in power.drawn.dimensions.items()}
         try:
             turning(replaced(power.result.design, values))
         except AssemblyError:
             failed.append(row)
     assert 0 < len(failed) < 50
-    assert np.flatnonzero(np.isnan(found)).tolist() == failed
+    assert np.flatnonzero(np.isnan(powers)).tolist() == failed
 
 
 def test_blocks_do_not_matter(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -23,13 +23,13 @@ def test_of_a_sum_they_are_the_squares_of_its_factors() -> None:
     drawn, factors = realisations(), {"one": 3.0, "two": 2.0, "three": 1.0}
 
     def power(rows: dict[str, IntArray]) -> FloatArray:
-        return np.asarray(10 + sum(factors[name] * drawn[name][some] for name, some in rows.items()))
+        return np.asarray(10 + sum(factors[name] * drawn[name][numbers] for name, numbers in rows.items()))
 
-    found, whole = shares(power, NAMES, COUNT), sum(factor**2 for factor in factors.values())
+    result, whole = shares(power, NAMES, COUNT), sum(factor**2 for factor in factors.values())
     for name, factor in factors.items():
-        assert found[name].first == pytest.approx(factor**2 / whole, abs=0.01)
-        assert found[name].total == pytest.approx(factor**2 / whole, abs=0.01)
-        assert found[name].first_error < 0.1
+        assert result[name].first == pytest.approx(factor**2 / whole, abs=0.01)
+        assert result[name].total == pytest.approx(factor**2 / whole, abs=0.01)
+        assert result[name].first_error < 0.1
 
 
 def test_of_a_sum_and_a_product() -> None:
@@ -40,21 +40,21 @@ def test_of_a_sum_and_a_product() -> None:
         x, y, z = (drawn[name][rows[name]] if name in rows else 0.0 for name in NAMES)
         return np.asarray(1 + x + y * z + np.zeros(len(next(iter(rows.values())))))
 
-    found = shares(power, NAMES, COUNT)
-    assert [found[name].first for name in NAMES] == pytest.approx([0.75, 0, 0], abs=0.03)
-    assert [found[name].total for name in NAMES] == pytest.approx([0.75, 0.25, 0.25], abs=0.03)
+    result = shares(power, NAMES, COUNT)
+    assert [result[name].first for name in NAMES] == pytest.approx([0.75, 0, 0], abs=0.03)
+    assert [result[name].total for name in NAMES] == pytest.approx([0.75, 0.25, 0.25], abs=0.03)
 
 
 def test_the_same_every_time_and_without_the_linkages_that_do_not_turn() -> None:
     drawn = realisations()
 
     def power(rows: dict[str, IntArray]) -> FloatArray:
-        total = np.asarray(sum(drawn[name][some] for name, some in rows.items()))
+        total = np.asarray(sum(drawn[name][numbers] for name, numbers in rows.items()))
         return np.where(total > 2.5, np.nan, total)
 
-    found = shares(power, NAMES, COUNT, 256)
-    assert found == shares(power, NAMES, COUNT, 256)
-    assert all(0.2 < each.first < 0.45 for each in found.values())
+    result = shares(power, NAMES, COUNT, 256)
+    assert result == shares(power, NAMES, COUNT, 256)
+    assert all(0.2 < share.first < 0.45 for share in result.values())
 
 
 def test_without_salib_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -26,9 +26,9 @@ def of(design: fes_mj.Design, count: int = COUNT) -> Realisations:
 
 def test_every_prior_has_its_source_or_the_word_assumption() -> None:
     assert [*priors()][-1] == MASSES
-    for each in priors().values():
-        assert each["prior"]
-        assert any(word in each["source"].lower() for word in ("assumption", "results/", "data/", "exact"))
+    for prior in priors().values():
+        assert prior["prior"]
+        assert any(word in prior["source"].lower() for word in ("assumption", "results/", "data/", "exact"))
 
 
 def test_what_designs_share_is_the_same_in_both() -> None:
@@ -63,9 +63,11 @@ def test_muscles_that_could_not_have_moved_as_measured_are_not_drawn() -> None:
     fast = replace(moments, measured_on=replace(moments.measured_on, cadence=160 * RPM))
     peak = max(160 * RPM * np.abs(fast.measured_on.joint_rates(FULL_TURN).knee))
     assert 400 < np.degrees(peak) < 450
-    usual, found = (np.asarray(realisations(design, each, 500).relations.max_speed["knee"]) for each in (moments, fast))
-    assert usual.min() < peak < found.min()
-    assert found.shape == usual.shape
+    usual, faster = (
+        np.asarray(realisations(design, measured, 500).relations.max_speed["knee"]) for measured in (moments, fast)
+    )
+    assert usual.min() < peak < faster.min()
+    assert faster.shape == usual.shape
 
 
 def test_shipped_curves_and_those_of_own_moments() -> None:

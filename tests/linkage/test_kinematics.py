@@ -51,8 +51,8 @@ def test_a_root_finder_agrees(design: Design, crank_angle: float) -> None:
             return [abs(z - ends[0]) - ends[2], abs(z - ends[1]) - ends[3]]
 
         near = points[joint] + 0.01 - 0.005j
-        found = complex(*fsolve(distances, [near.real, near.imag], xtol=1e-13))
-        assert abs(found - points[joint]) < 1e-9
+        solved = complex(*fsolve(distances, [near.real, near.imag], xtol=1e-13))
+        assert abs(solved - points[joint]) < 1e-9
 
 
 def test_coefficients_are_the_derivatives(design: Design) -> None:

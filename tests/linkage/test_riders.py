@@ -39,9 +39,9 @@ def test_a_sample_has_the_percentiles_and_that_of_the_leg_which_no_draw_was_told
         # standard error of a quantile: sqrt(p (1 - p) / n) per density there; of a normal 0.103 / sd at its 5 %
         error = np.array([np.sqrt(0.05 * 0.95) / 0.103, 0.5 / 0.399, np.sqrt(0.05 * 0.95) / 0.103]) * measure.sd
         rounding = 0.0005 * np.ones(3) if measure is not people.mass else 0.05 * np.ones(3)
-        found = np.percentile(values, [5, 50, 95])
+        percentiles = np.percentile(values, [5, 50, 95])
         slack = 0.003 if measure is people.leg else 0.0  # m: a sum of lognormal halves has none of the measured shape
-        assert np.all(np.abs(found - measure) < 3.5 * error / np.sqrt(SIZE) + rounding + slack)
+        assert np.all(np.abs(percentiles - measure) < 3.5 * error / np.sqrt(SIZE) + rounding + slack)
 
 
 def test_the_percentile_95_of_the_normal_distribution() -> None:

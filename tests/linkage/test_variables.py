@@ -86,4 +86,4 @@ def test_no_other_degrees_are_read_as_an_angle_nearer_to_one(angle: float) -> No
     degrees = [math.degrees(angle)]
     for _ in range(20):
         degrees = [math.nextafter(degrees[0], -math.inf), *degrees, math.nextafter(degrees[-1], math.inf)]
-    assert min(abs(math.radians(each) - angle) for each in degrees) == nearest
+    assert min(abs(math.radians(candidate) - angle) for candidate in degrees) == nearest

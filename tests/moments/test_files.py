@@ -108,16 +108,18 @@ def test_three_noisy_turns_are_within_their_own_error_bar(tmp_path: Path) -> Non
 def test_the_error_bar_is_the_scatter_of_the_turns(tmp_path: Path) -> None:
     """Mean power is linear in the moments: its error is that of the mean of the turns' own powers."""
     write_trial(tmp_path, SLOW, 5.4, 0.8)
-    found = load_measurement(described(tmp_path, TRIAL))
+    measurement = load_measurement(described(tmp_path, TRIAL))
     powers = [
         sum(
-            Measurement.of(replace(found.moments, crank_angle=t.crank_angle, knee=t.knee, hip=t.hip)).moments.power_mean
+            Measurement.of(
+                replace(measurement.moments, crank_angle=t.crank_angle, knee=t.knee, hip=t.hip)
+            ).moments.power_mean
         )
-        for t in found.turns
+        for t in measurement.turns
     ]
-    assert sum(found.moments.power_mean) == pytest.approx(np.mean(powers), rel=1e-6)
+    assert sum(measurement.moments.power_mean) == pytest.approx(np.mean(powers), rel=1e-6)
     student = stats.t.ppf(stats.norm.cdf(1), len(powers) - 1)  # few turns know their own scatter badly
-    assert found.power_sd == pytest.approx(student * stats.sem(powers), rel=1e-4)
+    assert measurement.power_sd == pytest.approx(student * stats.sem(powers), rel=1e-4)
 
 
 @pytest.mark.parametrize("turning", ["forward", "backward"])
@@ -181,7 +183,7 @@ def misreadings(folder: Path, change: str) -> set[str]:
         angle, knee, hip = angle[:18], knee[:18], hip[:18]
     path = folder / "a.csv"
     path.write_text(csv_text(dict(zip(HEADS, (angle, knee, hip), strict=True))))
-    return {each.name for each in load_moments(path).misreadings}
+    return {misreading.name for misreading in load_moments(path).misreadings}
 
 
 @pytest.mark.parametrize(
@@ -204,7 +206,7 @@ def test_what_looks_misread(change: str, names: set[str], tmp_path: Path) -> Non
 def test_degrees_declared_as_radians(tmp_path: Path) -> None:
     plain(tmp_path)
     path = described(tmp_path, '[moments]\nfile = "plain.csv"\nangle_unit = "rad"\n')
-    assert "degrees" in {each.name for each in load_moments(path).misreadings}
+    assert "degrees" in {misreading.name for misreading in load_moments(path).misreadings}
 
 
 REFUSED = [
@@ -280,10 +282,10 @@ def test_pedal_forces_of_a_simulation_give_its_moments_back(tmp_path: Path) -> N
         f"seat_angle = {math.degrees(linkage.seat_angle)!r}\ngear_ratio = {linkage.gear_ratio!r}\n"
         f"[measured_on.rider]\nthigh = {rider.thigh!r}\nshank = {rider.shank!r}\nmass = {rider.mass!r}\n",
     )
-    found = load_measurement(path).moments
+    recovered = load_measurement(path).moments
     given = run.torque.along(kinematics.solve(design, TURN), run.cadence)
-    back = found.at(TURN - found.measured_on.top_dead_centre)
+    back = recovered.at(TURN - recovered.measured_on.top_dead_centre)
     for joint in JOINTS:
         error = back[joint] - given[joint]
         assert np.sqrt(np.mean(error**2)) < 5e-3 * np.abs(given[joint]).max()
-    assert sum(found.power_mean) == pytest.approx(run.power_mean, rel=5e-3)
+    assert sum(recovered.power_mean) == pytest.approx(run.power_mean, rel=5e-3)

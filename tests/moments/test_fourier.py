@@ -34,14 +34,14 @@ def test_twelve_samples_give_three_harmonics(count: int) -> None:
 @pytest.mark.parametrize(("count", "noise"), [(36, 0.1), (36, 1.0), (200, 0.3), (50_000, 1.0)])
 def test_noisy_samples_are_averaged(count: int, noise: float) -> None:
     """Without knowing that the curve has three harmonics, it is found almost as well as least squares that know it."""
-    random, found, known = np.random.default_rng(0), [], []
+    random, misses, least = np.random.default_rng(0), [], []
     few = [0, 1, 2, 3, *range(HARMONICS + 1, HARMONICS + 4)]
     for _ in range(10):
         angle = np.arange(count) * 2 * np.pi / count + random.uniform(0, 0.1, count)
         values = curve(angle) + noise * random.standard_normal((count, 2))
-        found.append(fourier(TURN) @ fit(angle, values) - curve(TURN))
-        known.append(fourier(TURN)[:, few] @ np.linalg.lstsq(fourier(angle)[:, few], values)[0] - curve(TURN))
-    assert np.std(found) < 1.7 * np.std(known)
+        misses.append(fourier(TURN) @ fit(angle, values) - curve(TURN))
+        least.append(fourier(TURN)[:, few] @ np.linalg.lstsq(fourier(angle)[:, few], values)[0] - curve(TURN))
+    assert np.std(misses) < 1.7 * np.std(least)
 
 
 @pytest.mark.parametrize("noise", [0.0, 0.01, 0.3, 2.0])
@@ -53,9 +53,9 @@ def test_no_curve_swings_far_beyond_its_samples(count: int, span: float, noise: 
     for _ in range(5):
         angle = np.radians(random.uniform(0, span, count))
         values = curve(angle) + noise * random.standard_normal((count, 2))
-        found = fourier(TURN) @ fit(angle, values)
+        fitted = fourier(TURN) @ fit(angle, values)
         margin = 0.35 * np.ptp(values, axis=0)
-        assert np.all((found > values.min(axis=0) - margin) & (found < values.max(axis=0) + margin))
+        assert np.all((fitted > values.min(axis=0) - margin) & (fitted < values.max(axis=0) + margin))
 
 
 def test_the_same_moment_everywhere_stays_what_it_is() -> None:

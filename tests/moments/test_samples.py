@@ -37,7 +37,7 @@ def test_power_and_its_error_are_those_of_the_drawn_curves(name: str) -> None:
 def test_drawn_moments_are_their_coefficients() -> None:
     moments, curves = sampled_moments("p1p3"), sampled_coefficients("p1p3")
     assert len(moments) == len(curves)
-    assert [each.name for each in moments[:2]] == ["p1p3 1", "p1p3 2"]
+    assert [curve.name for curve in moments[:2]] == ["p1p3 1", "p1p3 2"]
     angle = np.radians([0.0, 7.0, 359.0])
     for number in (0, 17, 999):
         knee, hip = moments[number].at(angle)

@@ -96,23 +96,26 @@ def test_the_cross_check_agrees_with_the_relation_too(design: fes_mj.Design, leg
 def test_drawn_relations_span_what_is_published() -> None:
     """Straight lines end at 400 to 870 deg/s; of hyperbolas half to twice as fast are as many as the data say."""
     drawn = drawn_relations("hill", 4000, 0)
-    straight = [each for each in drawn if math.isinf(each.curvature)]
+    straight = [relation for relation in drawn if math.isinf(relation.curvature)]
     assert len(straight) / len(drawn) == pytest.approx(0.5, abs=0.03)
-    ends = np.degrees([each.max_speed["knee"] for each in straight])
+    ends = np.degrees([relation.max_speed["knee"] for relation in straight])
     assert 400 <= ends.min() < 405
     assert 865 < ends.max() <= 870
-    speeds = np.array([each.max_speed["knee"] for each in drawn if each not in straight]) / HILL.max_speed["knee"]
+    speeds = (
+        np.array([relation.max_speed["knee"] for relation in drawn if relation not in straight])
+        / HILL.max_speed["knee"]
+    )
     assert np.median(speeds) == pytest.approx(1, rel=0.06)
     within = math.erf(math.log(2) / 0.5 / math.sqrt(2))
     assert np.mean((speeds > 0.5) & (speeds < 2)) == pytest.approx(within, abs=0.03)
-    assert all(each.max_speed["hip"] / each.max_speed["knee"] == pytest.approx(0.8) for each in drawn[:10])
-    plateaus = np.array([each.eccentric_plateau for each in drawn])
+    assert all(relation.max_speed["hip"] / relation.max_speed["knee"] == pytest.approx(0.8) for relation in drawn[:10])
+    plateaus = np.array([relation.eccentric_plateau for relation in drawn])
     assert plateaus.min() >= 1.1
     assert plateaus.max() <= 1.7
     assert drawn_relations("hill", 4000, 0) == drawn
-    for each in drawn[:50]:
-        assert each.factor("knee", 0.0) == 1
-        assert each.factor("knee", 1e3) == 0
+    for relation in drawn[:50]:
+        assert relation.factor("knee", 0.0) == 1
+        assert relation.factor("knee", 1e3) == 0
 
 
 def test_drawn_relations_cost_a_fast_knee_as_much_as_is_published() -> None:
@@ -124,7 +127,7 @@ def test_drawn_relations_cost_a_fast_knee_as_much_as_is_published() -> None:
     """
     fast, slow = np.radians([256.0, 137.0])
     ratio = np.array(
-        [each.factor("knee", fast) / each.factor("knee", slow) for each in drawn_relations("hill", 4000, 0)]
+        [relation.factor("knee", fast) / relation.factor("knee", slow) for relation in drawn_relations("hill", 4000, 0)]
     )
     assert ratio.mean() == pytest.approx(0.73, abs=0.005)
     assert ratio.std() == pytest.approx(0.10, abs=0.0065)
@@ -137,8 +140,8 @@ def test_straight_lines_and_batches() -> None:
     speed = np.linspace(0, 30, 40)
     assert straight.factor("knee", speed) == pytest.approx(np.maximum(1 - speed / 25, 0))
     members = [HILL, straight, *drawn_relations("hill", 5, 3)]
-    some = np.linspace(-20, 20, 11)
+    speeds = np.linspace(-20, 20, 11)
     for batch, those in ((stacked(members), members), (stacked(members).taken([4, 1]), [members[4], members[1]])):
         for joint in JOINTS:
-            expected = [each.factor(joint, some) for each in those]
-            assert batch.factor(joint, some) == pytest.approx(np.array(expected))
+            expected = [relation.factor(joint, speeds) for relation in those]
+            assert batch.factor(joint, speeds) == pytest.approx(np.array(expected))

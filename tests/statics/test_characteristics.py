@@ -39,10 +39,10 @@ def test_energy_swing_of_a_sine() -> None:
 @pytest.mark.parametrize("turns", [1, 3])
 def test_power_of_a_sine(turns: int) -> None:
     """With A sin about a mean P the energy swings by 2 A / w, per work 2 pi P / w of a turn: A / (pi P)."""
-    found = power_characteristics(np.tile(10 + 4 * np.sin(ANGLE), turns), turns)
-    assert found["power_peak_to_peak_W"] == pytest.approx(8)
-    assert found["power_peak_to_mean"] == pytest.approx(1.4)
-    assert found["energy_fluctuation"] == pytest.approx(4 / (np.pi * 10), rel=2 * STEP * np.pi)
+    summary = power_characteristics(np.tile(10 + 4 * np.sin(ANGLE), turns), turns)
+    assert summary["power_peak_to_peak_W"] == pytest.approx(8)
+    assert summary["power_peak_to_mean"] == pytest.approx(1.4)
+    assert summary["energy_fluctuation"] == pytest.approx(4 / (np.pi * 10), rel=2 * STEP * np.pi)
     negative = power_characteristics(np.sin(ANGLE) - 2)
     assert negative["inactive_zone_share"] == 1
     assert np.isnan([negative["power_peak_to_mean"], negative["energy_fluctuation"]]).all()

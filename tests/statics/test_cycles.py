@@ -72,24 +72,24 @@ def test_random_designs_in_a_batch_fare_as_alone(name: str, moments: fes_mj.Join
         reasons = [obstacle.reason for obstacle in together.turning.obstacles if obstacle.hindered[row]]
         outside = [joint for joint, which in together.outside[1].items() if which[row]]
         assert bool(reasons) != together.turns[row]
-        found = solved(alone, moments)
-        if isinstance(found, AssemblyError):
-            assert f"{design.name}: {reasons[0].partition(' through')[0]}" in str(found)
+        result = solved(alone, moments)
+        if isinstance(result, AssemblyError):
+            assert f"{design.name}: {reasons[0].partition(' through')[0]}" in str(result)
             fates.add("cannot turn")
-        elif isinstance(found, InputError):
-            assert all(f"the {joint} moves from" in str(found) for joint in outside)
+        elif isinstance(result, InputError):
+            assert all(f"the {joint} moves from" in str(result) for joint in outside)
             assert outside
             fates.add("never inside")
         else:
             assert not reasons + outside
-            per_work = found.cadence / (2 * np.pi)
+            per_work = result.cadence / (2 * np.pi)
             power, *deviations = together.work[row] * per_work
-            assert power == pytest.approx(found.power_mean, rel=2e-4, abs=2e-3)
-            assert together.outside[0][row] == pytest.approx(found.extrapolation.share, abs=4e-3)
-            assert together.outside_sd[row] * per_work == pytest.approx(found.extrapolation.sd, rel=2e-3, abs=5e-3)
+            assert power == pytest.approx(result.power_mean, rel=2e-4, abs=2e-3)
+            assert together.outside[0][row] == pytest.approx(result.extrapolation.share, abs=4e-3)
+            assert together.outside_sd[row] * per_work == pytest.approx(result.extrapolation.sd, rel=2e-3, abs=5e-3)
             deviation = np.hypot(np.linalg.norm(deviations), together.outside_sd[row] * per_work)
-            assert deviation == pytest.approx(found.power_sd, rel=2e-3)
-            fates.add("outside" if found.extrapolation.share else "inside")
+            assert deviation == pytest.approx(result.power_sd, rel=2e-3)
+            fates.add("outside" if result.extrapolation.share else "inside")
     assert fates >= {"cannot turn", "never inside", "outside"}
 
 
@@ -132,7 +132,7 @@ def test_a_batch_is_its_designs_one_by_one(name: str, moments: fes_mj.JointMomen
 def test_sets_of_moments_side_by_side_are_the_sets_alone() -> None:
     design, both = fes_mj.load_design("d2"), [fes_mj.load_moments(group) for group in ("p1p2", "p1p3")]
     together = cycles(design, WorkTable.of(*both)).work[0]
-    assert together == pytest.approx([cycles(design, WorkTable.of(each)).work[0, 0] for each in both], rel=1e-14)
+    assert together == pytest.approx([cycles(design, WorkTable.of(moments)).work[0, 0] for moments in both], rel=1e-14)
 
 
 def test_work_does_not_depend_on_how_often_a_joint_reverses() -> None:
