@@ -10,6 +10,7 @@ import numpy as np
 from fes_mj.budget.power import Rows, UncertainPower
 from fes_mj.budget.unknowns import EXTRAPOLATION, LAG, MASSES, MOMENTS, SPEED, priors
 from fes_mj.common.arrays import FloatArray, IntArray
+from fes_mj.common.brief import Brief
 from fes_mj.moments.uncertainty import standard_deviation, with_sd
 from fes_mj.statics.turn import QuasiStatic
 
@@ -35,8 +36,8 @@ class Spread(NamedTuple):
         return cls(float(finite.mean()), float(finite.std(ddof=1)), failed)
 
 
-@dataclass(frozen=True)
-class ErrorBudget:
+@dataclass(frozen=True, repr=False)
+class ErrorBudget(Brief):
     """Of the mean crank power of one leg.
 
     by: standard deviation by unknown, W, the others as they are known best; None where it cannot be told. total: all
@@ -47,6 +48,10 @@ class ErrorBudget:
     total: Spread
     at_its_speed: Spread
     draws: int
+
+    @property
+    def brief(self) -> str:
+        return self.text
 
     def summary(self) -> dict[str, Any]:
         """The result as JSON names and units it."""
@@ -74,7 +79,12 @@ class ErrorBudget:
 
 
 def error_budget(*legs: QuasiStatic, draws: int = DRAWS) -> ErrorBudget | None:
-    """Of the mean power of legs, each with moments of its own; None where the error of any moments is not known."""
+    """Of the mean power of legs, each with moments of its own; None where the error of any moments is not known.
+
+    >>> budget = fes_mj.error_budget(fes_mj.quasi_static(fes_mj.load_design("d1"), fes_mj.load_moments("p1p2")))
+    >>> round(budget.total.mean, 1), round(budget.total.sd, 1)
+    (17.6, 3.8)
+    """
     if any(leg.moments.covariance is None for leg in legs):
         return None
     uncertain = [UncertainPower(leg, draws) for leg in legs]

@@ -7,12 +7,8 @@ from cyclopts import Parameter
 
 from fes_mj.cli.options import DesignName, Flag, LoadOptions, Out
 from fes_mj.common.console import say
-from fes_mj.common.errors import InputError
-from fes_mj.common.text import printable
-from fes_mj.common.writing import require_replaceable, require_writable, write_files
 
 _DEFAULTS = LoadOptions()
-_SCENE = "scene.xml"
 # the keys of simulation.variants.VARIANTS
 _Variant = Literal["sites", "bodies", "passive", "free", "brake", "ride", "fixed-gear", "two-legs", "compatible"]
 
@@ -41,25 +37,20 @@ def export(
     scene
         Also write scene.xml beside the model: floor, light and camera.
     """
-    from fes_mj.simulation.export import mjcf_text, scene_text, sidecar_text
-    from fes_mj.simulation.variants import variant_model, variant_options
+    from fes_mj.simulation.model_files import export as export_model
+    from fes_mj.simulation.variants import variant_options
 
-    changes = variant_options([*(variant or ()), *(["two-legs"] if options.legs == 2 else [])])
-    legs = changes.get("legs", 1)
-    loaded, inputs = replace(options, legs=legs).load(design), options.inputs(design)
-    require_writable(out, "the model", ".xml", inputs)
-    table, around = out.with_suffix(".csv"), out.with_name(_SCENE)
-    require_replaceable([table], "the table", inputs)
-    if scene:
-        if out.name.lower() == _SCENE or printable(out.name) != out.name:
-            raise InputError(f"{out}: --scene writes {_SCENE}, which names the model; give the model another name")
-        require_replaceable([around], "the scene", inputs)
-    texts = {
-        out: mjcf_text(variant_model(*loaded, changes)),
-        table: sidecar_text(loaded.design, loaded.moments, loaded.cadence, legs),
-        **({around: scene_text(loaded.design, out.name)} if scene else {}),
-    }
-    write_files(texts, unnamed=texts.keys() - {out})
-    for path, what in zip(texts, ("model", "table", "scene"), strict=False):
+    variants = [*(variant or ()), *(["two-legs"] if options.legs == 2 else [])]
+    loaded = replace(options, legs=variant_options(variants).get("legs", 1)).load(design)
+    files = export_model(
+        loaded.design,
+        loaded.moments,
+        out,
+        cadence=loaded.cadence,
+        variants=variants,
+        scene=scene,
+        inputs=options.inputs(design),
+    )
+    for what, path in files.items():
         say(f"{what}: {path}")
     return 0

@@ -10,6 +10,7 @@ import mujoco
 import numpy as np
 
 from fes_mj.common.arrays import FloatArray
+from fes_mj.common.brief import Brief
 from fes_mj.common.checks import LEAST_POWER, Check, check
 from fes_mj.common.writing import csv_text
 from fes_mj.riding.ride import Ride
@@ -22,18 +23,26 @@ from fes_mj.simulation.road_mjcf import TIMESTEP
 DISTANCES = 2000  # at which the two speeds are compared
 
 
-@dataclass(frozen=True, eq=False)
-class RideCase:
+@dataclass(frozen=True, eq=False, repr=False)
+class RideCase(Brief):
     """A ride, computed when it is first asked for, by either solver.
 
     The methods up to `reference` are its steps; a subclass that replaces one of them is a ride with a fault in one
     solver. timestep: of MuJoCo, s.
+
+    >>> ride = fes_mj.Ride(fes_mj.load_design("d1"), fes_mj.load_moments("p1p2"), duration=5)
+    >>> fes_mj.RideCase(ride).agrees
+    True
     """
 
     ride: Ride
     timestep: float = TIMESTEP
 
     # The steps.
+
+    @property
+    def brief(self) -> str:
+        return self.ride.name
 
     def edit_model(self, spec: Spec) -> None:
         """Change the MuJoCo model before it is compiled; nothing is changed here."""

@@ -7,7 +7,9 @@ from functools import cached_property
 import numpy as np
 
 from fes_mj.common.arrays import FloatArray
+from fes_mj.common.brief import Brief
 from fes_mj.common.checks import LEAST_POWER, Check, check
+from fes_mj.common.units import RPM
 from fes_mj.crosscheck.pipeline import Pipeline, Setup
 from fes_mj.simulation.bench import BenchOptions, Simulation
 from fes_mj.simulation.mjcf import Physics
@@ -19,15 +21,25 @@ from fes_mj.statics.turn import TURN_POINTS, QuasiStatic
 INERTIA_POWER_RMS = 0.03  # W
 
 
-@dataclass(frozen=True, eq=False)
-class Case(Setup):
+@dataclass(frozen=True, eq=False, repr=False)
+class Case(Brief, Setup):
     """A setup and all that was measured of it, computed when it is first asked for, once.
 
     pipeline: the steps that everything is computed by; another one is a case with a fault.
+
+    >>> case = fes_mj.Case(fes_mj.load_design("d1"), fes_mj.load_moments("p1p2"))
+    >>> case
+    <Case d1 p1p2 at 96.4 rpm, legs: 1>
+    >>> case.agrees
+    True
     """
 
     label: str = field(default="", kw_only=True)
     pipeline: type[Pipeline] = field(default=Pipeline, kw_only=True)
+
+    @property
+    def brief(self) -> str:
+        return f"{self.name} at {self.cadence / RPM:.1f} rpm, legs: {self.legs}"
 
     @property
     def name(self) -> str:

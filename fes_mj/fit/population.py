@@ -8,6 +8,7 @@ import numpy as np
 from scipy.interpolate import RegularGridInterpolator
 
 from fes_mj.common.arrays import FloatArray
+from fes_mj.common.brief import Brief
 from fes_mj.fit.seat import SEAT_LIMITS, SeatLimits, best_seats, score
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.riders import SAMPLES, Legs, Population, populations
@@ -45,8 +46,8 @@ class Riders(NamedTuple):
     fitted: FloatArray
 
 
-@dataclass(frozen=True)
-class PopulationFit:
+@dataclass(frozen=True, repr=False)
+class PopulationFit(Brief):
     """How a design, with the seat as drawn and with the best one for each, suits a sample of "men" and of "women".
 
     drawn, map: with the seat as drawn and with the best one. map_error: largest difference of the interpolated power to
@@ -59,6 +60,11 @@ class PopulationFit:
     map: PowerMap
     riders: dict[str, Riders]
     map_error: float
+
+    @property
+    def brief(self) -> str:
+        shares = (f"{100 * np.mean(np.isfinite(riders.fitted)):.0f} % of {who}" for who, riders in self.riders.items())
+        return f"{self.design.name} {self.moments.name}: {', '.join(shares)} can ride"
 
     def summary(self) -> dict[str, Any]:
         """The result as JSON names and units it."""
@@ -94,6 +100,9 @@ def fit_population(
     """Sample so many men and women; `done` is called STEPS times.
 
     Raises AssemblyError for a linkage that cannot turn whoever sits where.
+
+    >>> fes_mj.fit_population(fes_mj.load_design("d1"), fes_mj.load_moments("p1p2"), samples=100)
+    <PopulationFit d1 p1p2: 100 % of men, 100 % of women can ride>
     """
     table, random = WorkTable.of(moments), np.random.default_rng(seed)
     legs = {who: populations()[key].sample(samples, random) for who, key in PEOPLE.items()}

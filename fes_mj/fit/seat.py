@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from fes_mj.common.arrays import BoolArray, FloatArray
+from fes_mj.common.brief import Brief
 from fes_mj.common.errors import InputError
 from fes_mj.common.units import turns_per_second
 from fes_mj.linkage.assembly import LEAST_CLEARANCE, grashof_margin
@@ -149,8 +150,8 @@ def _best(design: Design, legs: FloatArray, seats: FloatArray, table: WorkTable)
     return Seats(*whole[:3]), Scores(*whole[3:])
 
 
-@dataclass(frozen=True)
-class SeatFit:
+@dataclass(frozen=True, repr=False)
+class SeatFit(Brief):
     """The best seat of a design, as drawn, for a rider within limits.
 
     design: with the rider and the seat moved. static: its turn; None if the rider does not fit, and then `why` says by
@@ -165,6 +166,11 @@ class SeatFit:
     design: Design
     static: QuasiStatic | None
     why: str | None
+
+    @property
+    def brief(self) -> str:
+        outcome = seat_text(self.seat) if self.fits else "does not fit"
+        return f"{self.drawn.name} {self.moments.name}: {outcome}"
 
     @property
     def fits(self) -> bool:
@@ -214,6 +220,10 @@ def fit_seat(design: Design, rider: Rider, moments: JointMoments, limits: SeatLi
 
     That no seat within the limits suits is a result as well. Raises AssemblyError for a linkage that cannot turn
     whoever sits where.
+
+    >>> rider = fes_mj.Rider(thigh=0.45, shank=0.47, mass=62, sex="female")
+    >>> fes_mj.fit_seat(fes_mj.load_design("d1"), rider, fes_mj.load_moments("p1p2"))
+    <SeatFit d1 p1p2: 9.6 cm towards the crank, 8.9 cm up, seat angle +3.6 deg>
     """
     seats, _ = best_seats(design, [rider.thigh], [rider.shank], WorkTable.of(moments), limits)
     seat = Seats(*(float(move[0]) for move in seats))

@@ -74,6 +74,10 @@ class Linkage:
 
     In a batch of designs any number is an array of shape (designs, 1). Raises InputError for a kind or branch that is
     none.
+
+    >>> trt = fes_mj.Linkage("trt", ground=-0.736 - 0.304j, crank=0.15, foot=0.069)
+    >>> trt.architecture.title, round(abs(trt.crank_centre), 3)
+    ('traditional recumbent tricycle (four-bar)', 0.796)
     """
 
     kind: str  # a key of ARCHITECTURES
@@ -119,7 +123,11 @@ class Linkage:
 
 @dataclass(frozen=True)
 class Rider:
-    """Leg lengths in m, body mass in kg, and whose segment parameters apply (one of SEXES, or InputError)."""
+    """Leg lengths in m, body mass in kg, and whose segment parameters apply (one of SEXES, or InputError).
+
+    >>> fes_mj.load_design("d1").with_rider(mass=62.0).rider
+    Rider(thigh=0.52, shank=0.52, mass=62.0, sex='male', leg_mass_factor=1.0)
+    """
 
     thigh: float = 0.52  # R4
     shank: float = 0.52  # R5: knee to the level of the pedal axle, at right angles to the sole (docs/errata.md, E18)
@@ -136,6 +144,10 @@ class Design:
     """A named linkage together with the rider who sits on it; or a batch, in which any number may be an array.
 
     The arrays of a batch have the shape (designs, 1), as many designs in each.
+
+    >>> shorter = fes_mj.load_design("r2").with_linkage(crank=0.038)
+    >>> fes_mj.quasi_static(shorter, fes_mj.load_moments("p1p2"))
+    <QuasiStatic r2 p1p2: 20.67 W at 83.1 rpm>
     """
 
     name: str

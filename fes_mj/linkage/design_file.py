@@ -24,6 +24,10 @@ def load_design(source: str | Path, dims: str = "identified") -> Design:
     """A design of the paper ("trt", "r1", "r2", "d1", "d2"; dims "identified" or "printed") or a design file.
 
     Raises InputError naming the file, the key, the value and what is allowed.
+
+    >>> design = fes_mj.load_design("d1")
+    >>> design.linkage.kind, design.linkage.crank
+    ('cdt', 0.160788)
     """
     return _read(design_path(source, dims))
 

@@ -73,6 +73,9 @@ def load_moments(source: str | Path = "p1p2", left: str | Path | None = None) ->
     """Joint moments of a rider group ("p1p2", "p1p3"; with covariance), a CSV file or a measurement file (.toml).
 
     left: another source for the left leg. Raises InputError naming file, line or key, value and what is allowed.
+
+    >>> fes_mj.load_moments("p1p2")
+    <JointMoments p1p2: 360 samples of a turn>
     """
     if left is not None:
         return replace(load_moments(source), left=load_moments(left))

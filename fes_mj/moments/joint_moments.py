@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from fes_mj.common.arrays import FloatArray
+from fes_mj.common.brief import Brief
 from fes_mj.common.errors import InputError
 from fes_mj.linkage.joints import PerJoint
 from fes_mj.moments.fourier import fit, fourier
@@ -26,8 +27,8 @@ class Misreading(NamedTuple):
     text: str
 
 
-@dataclass(frozen=True, eq=False)
-class JointMoments:
+@dataclass(frozen=True, eq=False, repr=False)
+class JointMoments(Brief):
     """Net knee and hip moment of one leg over a tricycle's crank angle, periodic, extension positive.
 
     crank_angle: shape (n,), rad from top dead centre, in any order and by any whole turns.
@@ -37,6 +38,10 @@ class JointMoments:
     torque_velocity: how the moments change with joint speed; None is the paper's assumption, not at all.
     measured_on: the tricycle, rider and cadence; cadence_known: whether the cadence is said anywhere.
     left: the left leg's, where it has its own. misreadings: what looks wrong in the file they come from.
+
+    >>> angle = np.radians([0, 90, 180, 270])
+    >>> fes_mj.JointMoments("mine", angle, np.array([10.0, 20.0, 0.0, -10.0]), np.array([0.0, 0.0, 5.0, 0.0]))
+    <JointMoments mine: 4 samples of a turn>
     """
 
     name: str
@@ -49,6 +54,10 @@ class JointMoments:
     cadence_known: bool = True
     left: "JointMoments | None" = None
     misreadings: tuple[Misreading, ...] = ()
+
+    @property
+    def brief(self) -> str:
+        return f"{self.name}: {len(self.knee)} samples of a turn"
 
     @cached_property
     def coefficients(self) -> PerJoint[FloatArray]:

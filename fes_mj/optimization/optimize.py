@@ -11,6 +11,7 @@ import numpy as np
 from numpy.random import SeedSequence
 
 from fes_mj.common.arrays import FloatArray
+from fes_mj.common.brief import Brief
 from fes_mj.common.errors import InputError
 from fes_mj.common.parallel import HERE, Workers, run_tasks
 from fes_mj.common.units import turns_per_second
@@ -25,8 +26,8 @@ from fes_mj.statics.cycles import cycles
 from fes_mj.statics.work_table import WorkTable
 
 
-@dataclass(frozen=True)
-class Optimum:
+@dataclass(frozen=True, repr=False)
+class Optimum(Brief):
     """The best design of all searches, or of a front the one with the most power averaged over both groups.
 
     name: the design's. x: its variables, shape (variables,), see Problem. evaluations: of all searches together.
@@ -38,6 +39,10 @@ class Optimum:
     x: FloatArray
     evaluations: int
     front: Front | None = None
+
+    @property
+    def brief(self) -> str:
+        return f"{self.name}: {self.power:.2f} W after {self.evaluations} evaluations"
 
     @property
     def design(self) -> Design:
@@ -119,6 +124,9 @@ def optimize(
 
     Raises InputError for what make_problem refuses, an infeasible start, and if no search finds anything feasible;
     MissingPartError without the package of the method.
+
+    >>> fes_mj.optimize("crt", fes_mj.load_moments("p1p2"), budget=300, searches=1)
+    <Optimum crt-p1p2: 22.54 W after 300 evaluations>
     """
     task = make_problem(kind, moments, **problem)
     name = findings.name if findings else f"{kind}-{moments.name}"

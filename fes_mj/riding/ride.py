@@ -4,6 +4,7 @@ import math
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
+from fes_mj.common.brief import Brief
 from fes_mj.common.errors import InputError
 from fes_mj.common.units import KMH
 from fes_mj.linkage.design import TRICYCLE_SPEED, WHEEL_DIAMETER, Design
@@ -24,6 +25,10 @@ class Road:
     slope: rise per horizontal run. tricycle_mass: kg, wheels included, without crank and linkage. rolling_mass: kg, of
     the rims, which turn as well as move and so count twice as inertia. rolling_resistance: force per weight, a dry
     friction. drag_area: m^2, drag coefficient times frontal area.
+
+    >>> road = fes_mj.Road(slope=0.01)
+    >>> fes_mj.Ride(fes_mj.load_design("r2"), fes_mj.load_moments(), road, transmission="fixed")
+    <Ride r2 p1p2 fixed 1 %>
     """
 
     slope: float = 0.0
@@ -54,13 +59,16 @@ class Load(NamedTuple):
     drag: float  # N s^2/m^2
 
 
-@dataclass(frozen=True, eq=False)
-class Ride:
+@dataclass(frozen=True, eq=False, repr=False)
+class Ride(Brief):
     """A design with both legs on a road, driven by joint moments that follow the crank angle.
 
     transmission: one of TRANSMISSIONS. lag: time constant of the muscles' answer, s. launch: speed at the start, m/s; 0
     is a start from rest. start: crank angle there, rad. duration: s. Whether the moments depend on joint speed is up
     to moments.torque_velocity.
+
+    >>> fes_mj.Ride(fes_mj.load_design("d1"), fes_mj.load_moments("p1p2"), duration=20)
+    <Ride d1 p1p2 freewheel 0 %>
     """
 
     design: Design
@@ -71,6 +79,10 @@ class Ride:
     launch: float = TRICYCLE_SPEED
     start: float = 0.0
     duration: float = 60.0
+
+    @property
+    def brief(self) -> str:
+        return self.name
 
     @property
     def fixed(self) -> bool:

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from fes_mj.common.arrays import BoolArray, FloatArray
+from fes_mj.common.brief import Brief
 from fes_mj.common.units import KMH
 from fes_mj.linkage.design import TRICYCLE_SPEED
 from fes_mj.riding.ride import Ride
@@ -18,8 +19,8 @@ STEEPEST = 0.3  # rise per run; the steepest streets there are have 0.35
 LAUNCH_STEP, SLOPE_STEP = 0.05 * KMH, 1e-4  # to which launch and slope are sought
 
 
-@dataclass(frozen=True, eq=False)
-class Starts:
+@dataclass(frozen=True, eq=False, repr=False)
+class Starts(Brief):
     """How a ride begins and what it climbs.
 
     crank_angle: rad, over a turn, shape (2 * angles,). works: whether it still rides at the ride's end when started
@@ -32,6 +33,11 @@ class Starts:
     works: BoolArray
     launch: float | None
     slope: float | None
+
+    @property
+    def brief(self) -> str:
+        launch = "no launch keeps it going" if self.launch is None else f"anywhere at {self.launch / KMH:.1f} km/h"
+        return f"{self.ride.name}: from rest at {100 * self.share:.0f} % of the crank angles, {launch}"
 
     @property
     def share(self) -> float:
@@ -53,6 +59,10 @@ def starts(ride: Ride, angles: int | None = None) -> Starts:
 
     A faster launch and a gentler slope are taken to do whatever a slower and a steeper one do. Raises
     InputError as trace.ride.
+
+    >>> ride = fes_mj.Ride(fes_mj.load_design("r2"), fes_mj.load_moments("p1p2"), duration=5)
+    >>> fes_mj.starts(ride, angles=4)
+    <Starts r2 p1p2 freewheel 0 %: from rest at 50 % of the crank angles, anywhere at 1.4 km/h>
     """
     half_turn = np.linspace(0, np.pi, angles or ANGLES, endpoint=False)
 

@@ -107,6 +107,11 @@ def stimulation(design: Design, cadences: Sequence[float], lag: float = 0.0) -> 
 
     Windows that hold less than LEAST_SHARE of the muscle's swing are left out. lag: s, from a change of the stimulation
     to the muscle's answer. Raises AssemblyError for a linkage that does not close.
+
+    >>> design = fes_mj.load_design("d1")
+    >>> window = fes_mj.stimulation(design, [design.linkage.cadence], lag=0.1)[0]
+    >>> window.muscle, window.leg, [round(math.degrees(angle)) for angle in window.works]
+    ('quadriceps', 'right', [315, 444])
     """
     turning(design)
     angle = np.linspace(0, 2 * np.pi, POINTS, endpoint=False)

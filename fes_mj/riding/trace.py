@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from fes_mj.common.arrays import BoolArray, FloatArray
+from fes_mj.common.brief import Brief
 from fes_mj.common.errors import UnstableError
 from fes_mj.common.machine_code import readable
 from fes_mj.common.units import KMH, RPM
@@ -23,8 +24,8 @@ ROWS = 4096  # samples that are made before Python looks at them
 MOST_ROWS = 2**21  # an hour of fast riding; beyond it something is wrong
 
 
-@dataclass(frozen=True, eq=False)
-class Trace:
+@dataclass(frozen=True, eq=False, repr=False)
+class Trace(Brief):
     """What became of a ride, sampled in time; arrays of shape (samples,).
 
     time: s. crank_angle: rad, running on. crank_speed: rad/s. distance: m. speed: of the tricycle, m/s. coasting:
@@ -41,6 +42,12 @@ class Trace:
     coasting: BoolArray
     muscle_work: FloatArray
     road_work: FloatArray
+
+    @property
+    def brief(self) -> str:
+        if self.stopped_at is not None:
+            return f"{self.ride.name}: stops after {self.stopped_at:.1f} s"
+        return f"{self.ride.name}: rides at {self.speed[-1] / KMH:.2f} km/h after {self.time[-1]:.0f} s"
 
     @cached_property
     def rides(self) -> bool:
@@ -181,6 +188,9 @@ def ride(ride: Ride, steps: Steps = DEFAULT_STEPS) -> Trace:
 
     Raises InputError for a linkage that does not turn and for joints that never enter the moments' range, UnstableError
     where the equation cannot be integrated.
+
+    >>> fes_mj.ride(fes_mj.Ride(fes_mj.load_design("d1"), fes_mj.load_moments("p1p2")))
+    <Trace d1 p1p2 freewheel 0 %: rides at 30.37 km/h after 60 s>
     """
     from fes_mj.riding import solver  # with numba, which takes a second to import
 

@@ -8,6 +8,8 @@ import mujoco
 import numpy as np
 
 from fes_mj.common.arrays import ComplexArray, FloatArray
+from fes_mj.common.brief import Brief
+from fes_mj.common.units import RPM
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.joints import JOINTS, PerJoint
 from fes_mj.linkage.legs import LEGS, Leg
@@ -40,8 +42,8 @@ class Energy:
         return asdict(self) | {"lost": self.lost}
 
 
-@dataclass(frozen=True, eq=False)
-class Simulation:
+@dataclass(frozen=True, eq=False, repr=False)
+class Simulation(Brief):
     """Whole measured turns; arrays have shape (steps,), sampled at the start of each step.
 
     Dictionaries are by joint name ("hip", "knee", "crank", "rocker", "coupler"; with two legs "right_hip" ...; moments
@@ -67,6 +69,11 @@ class Simulation:
     loop_gap: dict[str, FloatArray]  # m
     loop_force: dict[str, ComplexArray]  # N
     energy: Energy
+
+    @property
+    def brief(self) -> str:
+        rpm, steps = self.cadence / RPM, len(self.crank_angle)
+        return f"{self.design.name} {self.moments.name}: {self.power_mean:.2f} W at {rpm:.1f} rpm, {steps} steps"
 
     @property
     def moments(self) -> JointMoments:
@@ -136,6 +143,9 @@ def simulate(
 
     Raises InputError for a linkage that does not turn and for joints that never enter the moments' range, UnstableError
     if the integration breaks down.
+
+    >>> fes_mj.simulate(fes_mj.load_design("d1"), fes_mj.load_moments("p1p2"))
+    <Simulation d1 p1p2: 31.14 W at 96.4 rpm, 2880 steps>
     """
     cadence = design.crank_speed(cadence)
     torque, pair = options.torque or torque_map(moments), LEGS[legs]

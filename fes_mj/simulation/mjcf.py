@@ -96,6 +96,10 @@ def build_mjcf(
 
     timestep: s; rounded so that a turn is a whole number of steps, and by default chosen by time_step. legs: 1, or 2
     half a turn apart on one crank. Raises AssemblyError if the linkage does not close, InputError if MuJoCo refuses it.
+
+    >>> model = fes_mj.build_mjcf(fes_mj.load_design("d1")).compile()
+    >>> model.nv, model.nu
+    (5, 3)
     """
     turning(design)
     pair, physics, held = LEGS[legs], options.physics, options.driven and options.held

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from fes_mj.common.arrays import ComplexArray, FloatArray
+from fes_mj.common.brief import Brief
 from fes_mj.common.errors import InputError
 from fes_mj.common.units import RPM
 from fes_mj.linkage import kinematics
@@ -26,8 +27,8 @@ from fes_mj.statics.extrapolation import NO_MORE, Extrapolation, extrapolation, 
 TURN_POINTS = 3600
 
 
-@dataclass(frozen=True, eq=False)
-class QuasiStatic:
+@dataclass(frozen=True, eq=False, repr=False)
+class QuasiStatic(Brief):
     """One turn of the massless model; arrays over crank angle, shape (n,).
 
     motion: over uniform crank angles of one turn. torque: the map that gave the moments. cadence: rad/s.
@@ -42,6 +43,10 @@ class QuasiStatic:
     joint_moment: PerJoint[FloatArray]
     crank_moment: FloatArray
     reactions: dict[str, ComplexArray]
+
+    @property
+    def brief(self) -> str:
+        return f"{self.design.name} {self.moments.name}: {self.power_mean:.2f} W at {self.cadence / RPM:.1f} rpm"
 
     @property
     def design(self) -> Design:
@@ -151,6 +156,9 @@ def quasi_static(
     cadence: crank speed in rad/s, by default the design's own (Eq. 16). points: crank angles from 0, uniform.
     Raises InputError for a batch of designs, a cadence that is none, or joints that never enter the moments' range,
     AssemblyError if the linkage does not turn.
+
+    >>> fes_mj.quasi_static(fes_mj.load_design("d1"), fes_mj.load_moments("p1p2"))
+    <QuasiStatic d1 p1p2: 31.14 W at 96.4 rpm>
     """
     turning_in_range(design, moments.measured_on)
     motion = kinematics.solve(design, np.linspace(0, 2 * np.pi, points, endpoint=False))

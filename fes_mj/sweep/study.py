@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fes_mj.common.arrays import FloatArray
+from fes_mj.common.brief import Brief
 from fes_mj.common.errors import InputError
 from fes_mj.common.reading import Section, is_number, read_toml
 from fes_mj.linkage.design import Design
@@ -34,8 +35,8 @@ NAMES = ("design", "moments")  # axes whose values are names
 _EXAMPLES = {"design": '"d1", "mine.toml"', "moments": '"p1p2", "mine.csv"'}
 
 
-@dataclass(frozen=True)
-class Study:
+@dataclass(frozen=True, repr=False)
+class Study(Brief):
     """Every combination of the grid's values with every point of the sample.
 
     Point i takes sample point i % size; the grid's last axis is the next to turn. grid: by axis, values as in the file.
@@ -53,6 +54,10 @@ class Study:
     size: int
     designs: dict[str, Design]
     moments: dict[str, JointMoments]
+
+    @property
+    def brief(self) -> str:
+        return f"{self.files[0].name}: {self.points:,} points, {self.analysis}"
 
     @property
     def points(self) -> int:

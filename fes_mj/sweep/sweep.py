@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from fes_mj.common.brief import Brief
 from fes_mj.common.errors import InputError, require_extra
 from fes_mj.common.parallel import HERE, Workers, run_tasks
 from fes_mj.common.provenance import digest
@@ -17,7 +18,7 @@ from fes_mj.common.reading import read_json
 from fes_mj.common.writing import make_folder, remove_leftovers, replacing, require_writable, write_text
 from fes_mj.linkage.design_file import design_toml
 from fes_mj.sweep.evaluation import column_types, evaluate
-from fes_mj.sweep.study import Study
+from fes_mj.sweep.study import Study, load_study
 
 MANIFEST = "study.json"
 TOP = 10  # points of a summary
@@ -25,12 +26,16 @@ TOP = 10  # points of a summary
 NOBODYS_FILES = ("thumbs.db", "ehthumbs.db", "desktop.ini", "icon\r", "lost+found", "__macosx")
 
 
-@dataclass(frozen=True)
-class Sweep:
+@dataclass(frozen=True, repr=False)
+class Sweep(Brief):
     """A study and the folder of its results."""
 
     study: Study
     folder: Path
+
+    @property
+    def brief(self) -> str:
+        return f"{self.study.files[0].name} in {self.folder}: {self.study.points:,} points"
 
     def path(self, chunk: int) -> Path:
         """File of a chunk."""
@@ -162,6 +167,23 @@ class Sweep:
             top = sorted(top, key=lambda row: -float(row["power_mean_W"]))[:TOP]
         best = top[0] if top else None
         return {"folder": str(self.folder), "points": points, "turning": turning, "best": best, "top": top}
+
+
+def run_sweep(study: str | Path, folder: str | Path, workers: Workers = HERE) -> Sweep:
+    r"""Evaluate every point of a study file (.toml) into a folder; what is there already is not done again.
+
+    Raises InputError for what the study must not say and for a folder of another study, MissingPartError without
+    pyarrow.
+
+    >>> study = folder / "cranks.toml"
+    >>> _ = study.write_text('[grid]\ndesign = ["d1", "r2"]\nR2 = [0.05, 0.06, 0.07]')
+    >>> sweep = fes_mj.run_sweep(study, folder / "results")
+    >>> sweep.summary()["points"], sweep.read(["power_mean_W"]).num_rows
+    (6, 6)
+    """
+    sweep = Sweep(load_study(Path(study)), Path(folder))
+    sweep.run(workers)
+    return sweep
 
 
 def _is_nobodys(path: Path) -> bool:
