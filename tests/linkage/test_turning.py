@@ -19,12 +19,10 @@ from fes_mj.statics.work_table import WorkTable
 def test_what_cannot_close_is_named_with_its_crank_angle() -> None:
     """R2 of the printed CRT R2: longest reach 0.53 m, needed 0.5301 m when the crank points away from the pivot."""
     printed = Design("r2", Linkage("crt", -0.62 + 0.32j, 0.04, 0.08, -0.49 + 0.01j, 0.15, 0.44, 0.09))
-    with pytest.raises(
-        AssemblyError, match=r"r2: rocker and coupler cannot close at crank angle 178.8 deg.*0\.5301 m.*0\.102 mm lack"
-    ):
+    with pytest.raises(AssemblyError, match=r"r2: rocker and coupler.* 178.8 deg.*0\.5301 m.*0\.102 mm"):
         turning(printed)
     far = Design("far", Linkage("trt", -1.0 - 0.4j, 0.15, 0.069))
-    with pytest.raises(AssemblyError, match=r"far: thigh and shank cannot close at crank angle 20[12]\.\d deg"):
+    with pytest.raises(AssemblyError, match=r"far: thigh and shank.* 20[12]\.\d deg"):
         turning(far)
 
 
@@ -34,7 +32,7 @@ def test_what_is_too_close_to_a_dead_centre_is_refused_by_name(kind: str, short:
     """Rocker and coupler of D1, shortened until they lack so much, or have no more than that to spare."""
     d1 = load_design("d1")
     pivot, crank = abs(d1.linkage.pivot_to_crank), d1.linkage.crank
-    for margin, said in ((-short, "mm lack"), (short, "motion is not determined; 0.1 mm are needed")):
+    for margin, said in ((-short, "mm lack"), (short, "0.1 mm")):
         if kind == "stretched":
             changed = replace(d1.linkage, coupler=pivot + crank - d1.linkage.rocker + margin)
         else:
@@ -47,7 +45,7 @@ def test_what_is_too_close_to_a_dead_centre_is_refused_by_name(kind: str, short:
 
 def test_a_thigh_that_turns_right_round_is_refused() -> None:
     round_the_hip = Design("around", Linkage("trt", 0.05 + 0j, 0.3, 0.0), Rider(0.3, 0.3))
-    with pytest.raises(AssemblyError, match=r"around: the thigh swings through 3[0-9][0-9] deg"):
+    with pytest.raises(AssemblyError, match=r"around: the thigh.* 3[0-9][0-9] deg"):
         turning(round_the_hip)
 
 

@@ -132,7 +132,7 @@ def test_a_trial_with_a_crank_angle_is_cut_into_turns(turning: str, tmp_path: Pa
     assert len(load_measurement(path).turns) == 6
     assert power(path) == pytest.approx(power(plain(tmp_path)), rel=1e-6)
     other = {"forward": "backward", "backward": "forward"}[turning]
-    with pytest.raises(InputError, match=r"counts against the sense of pedalling while time grows; moments\.turning"):
+    with pytest.raises(InputError, match=r"moments\.turning"):
         load_moments(described(tmp_path, f'[moments]\nfile = "a.csv"\nturning = "{other}"\n'))
 
 
@@ -210,36 +210,36 @@ def test_degrees_declared_as_radians(tmp_path: Path) -> None:
 
 
 REFUSED = [
-    ('file = "plain.csv"\nknee = "M"', r"plain\.csv: line 1: there is no column 'M'; the header"),
-    ('file = "none.csv"', r"none\.csv: cannot read the joint moments: No such file"),
+    ('file = "plain.csv"\nknee = "M"', r"plain\.csv: line 1: .*'M'"),
+    ('file = "none.csv"', r"none\.csv: .*No such file"),
     ('knee = "M"', r"moments\.file is missing"),
-    ("file = 3", r"moments\.file is 3; it must be the name of a file, or a list of such names"),
+    ("file = 3", r"moments\.file is 3"),
     ("file = []", r"moments\.file is \[\]"),
-    ('file = "plain.csv"\nangle_unit = "grad"', r"moments\.angle_unit is 'grad'; it must be one of deg, rad"),
-    ('file = "plain.csv"\nzero = "bdc"', r"moments\.zero is 'bdc'; it must be one of tdc, horizontal"),
-    ('file = "plain.csv"\nzero = 1000', r"moments\.zero is 1000; it must be"),
+    ('file = "plain.csv"\nangle_unit = "grad"', r"moments\.angle_unit is 'grad'"),
+    ('file = "plain.csv"\nzero = "bdc"', r"moments\.zero is 'bdc'"),
+    ('file = "plain.csv"\nzero = 1000', r"moments\.zero is 1000"),
     ('file = "plain.csv"\nturning = "left"', r"moments\.turning is 'left'"),
     ('file = "plain.csv"\nextension = { ankle = "positive" }', r"unknown key moments\.extension\.ankle"),
     ('file = "plain.csv"\nunit = "N m/kg"', r"measured_on\.rider\.mass is missing; moments\.unit is N m/kg"),
     ('file = "plain.csv"\nunits = "N m"', r"unknown key moments\.units"),
-    ('file = "stuck.csv"', r"stuck\.csv: line 4: time is 1 after 1 s; it must grow"),
-    ('file = "short.csv"', r"short\.csv: crank_angle_deg goes through 200 deg; a whole turn is needed"),
-    ('file = "plain.csv"\nkinematics = "ik.mot"\ncrank = "crank_angle_deg"', r"tell the crank angle in two ways"),
+    ('file = "stuck.csv"', r"stuck\.csv: line 4: time is 1 after 1 s"),
+    ('file = "short.csv"', r"short\.csv: crank_angle_deg .*200 deg"),
+    ('file = "plain.csv"\nkinematics = "ik.mot"\ncrank = "crank_angle_deg"', r"crank angle in two ways"),
     ('file = ["id.sto", "id.sto"]\nkinematics = "ik.mot"', r"names 2 and moments\.kinematics 1 files"),
-    ('file = "id.sto"\nkinematics = "none.mot"', r"none\.mot: cannot read the kinematics"),
-    ('file = "id.sto"\nkinematics = "ik.mot"', r"id\.sto: line 7: there is no column 'knee_Nm'"),
-    ('file = "id.sto"\nkinematics = "ik.mot"\nknee_angle = "hip_l"', r"ik\.mot: line 7: there is no column 'hip_l'"),
+    ('file = "id.sto"\nkinematics = "none.mot"', r"none\.mot: "),
+    ('file = "id.sto"\nkinematics = "ik.mot"', r"id\.sto: line 7: .*'knee_Nm'"),
+    ('file = "id.sto"\nkinematics = "ik.mot"\nknee_angle = "hip_l"', r"ik\.mot: line 7: .*'hip_l'"),
     ('file = "late.sto"\nkinematics = "ik.mot"\nknee = "knee_angle_r_moment"\nhip = "hip_flexion_r_moment"',
-     r"late\.sto: column time goes from 100 to .* must be of one trial"),
+     r"late\.sto: .*time .*100 to"),
     ('file = "id.sto"\nkinematics = "brief.mot"\nknee = "knee_angle_r_moment"\nhip = "hip_flexion_r_moment"',
-     r"brief\.mot: knee_angle_r is smallest . times; a whole turn lies between two"),
-    ('file = "headless.sto"', r"headless\.sto: the joint moments has no line 'endheader'"),
-    ('file = "kinds.sto"\nangle_unit = "deg"', r"kinds\.sto: the header says that angles are in rad, moments"),
-    ('file = "plain.csv"\npedal_force = "F"', r"moments\.pedal_force is 'F'; it must be the names of two columns"),
-    ('file = "plain.csv"\npedal_force = ["x", "y"]\nknee = "M"', r"moments\.knee and moments\.pedal_force exclude"),
-    ('file = "plain.csv"\n[measured_on]\nR2 = 0.6', r"measured_on: .* cannot close .* cannot have been measured"),
-    ('file = "plain.csv"\n[measured_on]\nkind = "crt"', r"measured_on\.kind is 'crt'; it must be one of trt"),
-    ('file = "plain.csv"\n[measured_on]\ncadence_rpm = 900', r"measured_on\.cadence_rpm is 900; it must be a cadence"),
+     r"brief\.mot: knee_angle_r .*\d times"),
+    ('file = "headless.sto"', r"headless\.sto: .*'endheader'"),
+    ('file = "kinds.sto"\nangle_unit = "deg"', r"kinds\.sto: .*rad, moments\.angle_unit"),
+    ('file = "plain.csv"\npedal_force = "F"', r"moments\.pedal_force is 'F'"),
+    ('file = "plain.csv"\npedal_force = ["x", "y"]\nknee = "M"', r"moments\.knee and moments\.pedal_force"),
+    ('file = "plain.csv"\n[measured_on]\nR2 = 0.6', r"measured_on: .*close"),
+    ('file = "plain.csv"\n[measured_on]\nkind = "crt"', r"measured_on\.kind is 'crt'"),
+    ('file = "plain.csv"\n[measured_on]\ncadence_rpm = 900', r"measured_on\.cadence_rpm is 900"),
     ('file = "plain.csv"\n[measured_on.rider]\nthigh = 52', r"measured_on\.rider\.thigh is 52; .*centimetres"),
 ]  # fmt: skip
 

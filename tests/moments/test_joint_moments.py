@@ -55,12 +55,12 @@ def test_what_cannot_be_used_is_named(text: str, words: str, tmp_path: Path) -> 
 
 
 def test_unreadable_files(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="cannot read the joint moments: No such file"):
+    with pytest.raises(InputError, match="No such file"):
         load_moments(tmp_path / "nothing.csv")
-    with pytest.raises(InputError, match="cannot read the joint moments: Is a directory"):
+    with pytest.raises(InputError, match="Is a directory"):
         load_moments(tmp_path)
     (tmp_path / "binary.csv").write_bytes(b"\xff\xfe\x00")
-    with pytest.raises(InputError, match="is not UTF-8 text"):
+    with pytest.raises(InputError, match="UTF-8"):
         load_moments(tmp_path / "binary.csv")
 
 

@@ -80,7 +80,7 @@ def test_own_moments_have_no_sd(smooth_moments: JointMoments) -> None:
 
 def test_nothing_correlates_different_groups() -> None:
     one, other = (quasi_static(fes_mj.load_design("r1"), fes_mj.load_moments(group)) for group in ("p1p2", "p1p3"))
-    with pytest.raises(fes_mj.InputError, match="p1p2 and p1p3 are different moments"):
+    with pytest.raises(fes_mj.InputError, match="p1p2 and p1p3"):
         ratio_sd(one, other)
 
 

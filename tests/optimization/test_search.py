@@ -25,7 +25,7 @@ def test_random_starts_are_feasible_and_different() -> None:
 def test_an_empty_feasible_set_is_said_to_be_one() -> None:
     problem = problem_of("r1")
     impossible = replace(problem, limits=replace(problem.limits, knee_deg=(69.0, 70.0), crank_min=0.2))
-    with pytest.raises(fes_mj.InputError, match=r"no feasible crt found in \d+ evaluations; the closest violates: "):
+    with pytest.raises(fes_mj.InputError, match=r"crt .*\d+ evaluations.*: "):
         run_searches(impossible, "differential-evolution", budget=2000)
 
 
@@ -33,7 +33,7 @@ def test_an_infeasible_start_is_refused_by_name() -> None:
     problem = problem_of("d1")
     start = problem.variables(problem.template)
     start[2] = 0.5
-    with pytest.raises(fes_mj.InputError, match=r"the start d1 is not feasible: .*grashof is -0.\d+ m \(limit 0"):
+    with pytest.raises(fes_mj.InputError, match=r"d1 .*grashof is -0.\d+ m \(limit 0"):
         run_searches(problem, "random-pursuit", start=start)
 
 

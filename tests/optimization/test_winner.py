@@ -84,7 +84,7 @@ def test_a_gain_over_oneself_is_certain() -> None:
 
 
 def test_own_moments_have_no_known_error(smooth_moments: fes_mj.JointMoments) -> None:
-    with pytest.raises(InputError, match="smooth: nothing is known of the error"):
+    with pytest.raises(InputError, match="smooth: "):
         uncertain_table(smooth_moments)
 
 

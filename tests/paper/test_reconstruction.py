@@ -61,7 +61,7 @@ def test_evidence_that_contradicts_itself_is_named(old: str, new: str, name: str
     path, text = tmp_path / "evidence.toml", (DATA / "evidence.toml").read_text()
     assert old in text
     path.write_text(text.replace(old, new, 1))
-    with pytest.raises(InputError, match=rf"evidence '{name}' contradicts the rest: it lies .* standard dev"):
+    with pytest.raises(InputError, match=rf"evidence '{name}' .* standard dev"):
         reconstruct(load_evidence(path))
 
 

@@ -38,5 +38,5 @@ def test_another_map_is_another_run() -> None:
 
 def test_a_run_that_breaks_down_says_so(smooth_moments: fes_mj.JointMoments) -> None:
     huge = fes_mj.JointMoments("huge", smooth_moments.crank_angle, 1e13 * smooth_moments.knee, smooth_moments.hip)
-    with pytest.raises(UnstableError, match="d1: the simulation became unstable"):
+    with pytest.raises(UnstableError, match=r"d1: .*unstable"):
         simulate(fes_mj.load_design("d1"), huge, options=BenchOptions(make_loop=compiled_loop))

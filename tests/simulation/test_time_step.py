@@ -36,16 +36,16 @@ def test_what_does_not_fit_into_memory_is_refused_with_a_way_out() -> None:
     d1 = fes_mj.load_design("d1")
     most = MOST_STEPS // FEWEST_STEPS
     assert steps_per_turn(d1, 10.0, turns=most) == FEWEST_STEPS
-    with pytest.raises(fes_mj.InputError, match=f"needs {most + 1} x 2,880 time steps, .*; give at most {most} turns"):
+    with pytest.raises(fes_mj.InputError, match=f"{most + 1} x 2,880 .* {most} turns"):
         steps_per_turn(d1, 10.0, turns=most + 1)
-    with pytest.raises(fes_mj.InputError, match="give fewer turns or a longer --timestep"):
+    with pytest.raises(fes_mj.InputError, match="--timestep"):
         steps_per_turn(d1, 10.0, 1e-7)
 
 
 def test_what_moves_too_sharply_is_refused_before_it_runs() -> None:
     edge = random_design(np.random.default_rng(776))  # both dyads 0.2 mm from their dead centres
     assert max(each.margin[0] for each in clearances(edge)) < 2.1e-4
-    with pytest.raises(fes_mj.InputError, match=r"random: at 200 rpm the run needs .*slower --cadence"):
+    with pytest.raises(fes_mj.InputError, match=r"random: .*200 rpm .*--cadence"):
         steps_per_turn(edge, 200 * RPM)
     assert steps_per_turn(edge, 20 * RPM) < MOST_STEPS
 
@@ -86,7 +86,7 @@ def test_without_weight_a_loose_crank_is_slower() -> None:
 
 def test_a_loose_crank_near_a_dead_centre_is_refused() -> None:
     design = fes_mj.load_design("r2")
-    with pytest.raises(InputError, match="a loose crank would reach"):
+    with pytest.raises(InputError, match="loose crank"):
         loose_steps(design, design.linkage.cadence, gravity=1e9)
 
 

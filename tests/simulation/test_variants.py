@@ -93,13 +93,13 @@ def test_moments_of_its_own_give_each_leg_its_range() -> None:
 @pytest.mark.parametrize(
     ("variants", "said"),
     [
-        (["sites", "bodies"], "the variants sites and bodies exclude each other"),
-        (["two-legs", "free", "ride"], "the variants free and ride exclude each other"),
-        (["brake", "free"], "the variants brake and free exclude each other"),
-        (["ride", "brake"], "the variants ride and brake exclude each other"),
+        (["sites", "bodies"], "sites and bodies"),
+        (["two-legs", "free", "ride"], "free and ride"),
+        (["brake", "free"], "brake and free"),
+        (["ride", "brake"], "ride and brake"),
         (["fixed-gear"], "give it with ride"),
         (["fixed-gear", "brake"], "give it with ride"),
-        (["mjx"], "'mjx'; it must be one of sites, bodies"),
+        (["mjx"], "'mjx'"),
     ],
 )
 def test_what_makes_no_sense_is_refused(variants: list[str], said: str) -> None:
@@ -110,7 +110,7 @@ def test_what_makes_no_sense_is_refused(variants: list[str], said: str) -> None:
 def test_a_brake_needs_power_to_take() -> None:
     weak = fes_mj.load_moments()
     pulling = fes_mj.JointMoments("pulling", weak.crank_angle, -weak.knee, -weak.hip)
-    with pytest.raises(InputError, match=r"pulling: the moments deliver -.* W at 60 rpm"):
+    with pytest.raises(InputError, match=r"pulling: .*-.* W at 60 rpm"):
         variant_model(fes_mj.load_design("d1"), pulling, 2 * math.pi, {"crank": "brake"})
 
 

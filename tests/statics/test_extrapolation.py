@@ -31,8 +31,8 @@ def flipped(name: str, **parts: complex) -> Design:
 @pytest.mark.parametrize(
     ("sign", "said"),
     [
-        (-1 + 1j, "the rider faces \\+x in this sketch"),
-        (1 - 1j, "y is down in this sketch"),
+        (-1 + 1j, r"\+x"),
+        (1 - 1j, "y is down"),
         (-1 - 1j, "x is forwards and y down"),
     ],
 )
@@ -45,7 +45,7 @@ def test_a_mirrored_sketch_is_recognised(name: str, sign: complex, said: str) ->
 def test_a_wrong_sign_of_r1_is_recognised_before_anything_runs(name: str) -> None:
     wrong = flipped(name, ground=-1 + 1j)
     for run in (fes_mj.quasi_static, fes_mj.simulate):
-        with pytest.raises(InputError, match=r"the moments are known from .*R1's x is usually negative"):
+        with pytest.raises(InputError, match="R1's x"):
             run(wrong, fes_mj.load_moments())
 
 
@@ -57,7 +57,7 @@ def test_a_hip_that_never_enters_the_range_is_refused_and_one_that_does_is_not(d
     beyond = replace(
         design, linkage=replace(design.linkage, seat_angle=design.linkage.seat_angle + angle.min() - high - 0.01)
     )
-    with pytest.raises(InputError, match="the hip moves from"):
+    with pytest.raises(InputError, match="the hip"):
         turning_in_range(beyond, PAPER_TRICYCLE)
 
 
