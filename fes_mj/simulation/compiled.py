@@ -59,7 +59,8 @@ Advance: TypeAlias = Callable[[float, tuple[int, int], Any, Fields, FloatArray, 
 @machine_code
 def lead(half: float, fields: Fields) -> None:
     """Find the speeds at the positions' own time, as in stepping.controlled_loop."""
-    fields.lead[:] = fields.qvel + half * fields.qacc
+    for i in range(len(fields.lead)):
+        fields.lead[i] = fields.qvel[i] + half * fields.qacc[i]
 
 
 @machine_code
@@ -67,20 +68,23 @@ def step(pointers: tuple[int, int], fields: Fields) -> None:
     """Step the model, with centrifugal forces of the speeds that `lead` found."""
     model, data = pointers
     _step1(model, data)
-    fields.held[:] = fields.qvel
-    fields.qvel[:] = fields.lead
+    for i in range(len(fields.held)):
+        fields.held[i], fields.qvel[i] = fields.qvel[i], fields.lead[i]
     _com_vel(model, data)
     _rne(model, data, 0, fields.qfrc_bias.ctypes.data)
-    fields.qvel[:] = fields.held
+    for i in range(len(fields.held)):
+        fields.qvel[i] = fields.held[i]
     _step2(model, data)
 
 
 @machine_code
 def record(row: int, fields: Fields, sensor_rows: FloatArray, force_rows: FloatArray) -> None:
     """Keep the sensors, and of every so many steps the constraint forces."""
-    sensor_rows[row] = fields.sensordata
+    for i in range(sensor_rows.shape[1]):
+        sensor_rows[row, i] = fields.sensordata[i]
     if len(force_rows) and not row % FORCE_EVERY:
-        force_rows[row // FORCE_EVERY] = fields.efc_force
+        for i in range(force_rows.shape[1]):
+            force_rows[row // FORCE_EVERY, i] = fields.efc_force[i]
 
 
 def compiled_loop(torque: TorqueMap, drives: dict[str, str]) -> Loop:

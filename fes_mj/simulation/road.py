@@ -18,17 +18,21 @@ from fes_mj.simulation.road_control import road_control
 from fes_mj.simulation.road_loop import MakeControl, road_loop
 from fes_mj.simulation.road_mjcf import DRIVETRAIN, ROAD, TIMESTEP, build_road_mjcf, start_state
 from fes_mj.simulation.sensors import Sensors
-from fes_mj.simulation.stepping import PRE_ROLL, Loop, Run, run_loop
+from fes_mj.simulation.stepping import PRE_ROLL, Loop, Run, energy, run_loop
 from fes_mj.statics.extrapolation import turning_in_range
 
 
 @dataclass(frozen=True, eq=False)
 class RoadRun:
-    """A ride simulated by MuJoCo; every sensor of the model at every step, shape (steps, ...)."""
+    """A ride simulated by MuJoCo; every sensor of the model at every step, shape (steps, ...).
+
+    start_energy: potential and kinetic, of the exact start, J.
+    """
 
     ride: Ride
     timestep: float  # s
     model: mujoco.MjModel
+    start_energy: float
     run: Run
 
     @cached_property
@@ -38,24 +42,29 @@ class RoadRun:
     @cached_property
     def trace(self) -> Trace:
         """The ride as the reduced model describes it."""
-        rows, load = self.sensors, self.ride.load
-        distance, speed = rows[f"{ROAD}_angle"][:-1], rows.following_speed(ROAD)
-        power = np.zeros(len(speed))
-        for joint in joint_drives(TWO_LEGS):
-            power += rows[f"{joint}_moment"][:-1] * rows.following_speed(joint)
-        resistance = load.rolling * np.sign(speed) + load.climb + load.drag * speed * np.abs(speed)
+        rows, speed = self.sensors, self.sensors.following_speed(ROAD)
         free = np.zeros(len(speed), bool) if self.ride.fixed else rows[DRIVETRAIN][:-1] == 0
         return Trace(
             ride=self.ride,
             time=self.timestep * np.arange(len(speed)),
             crank_angle=rows["crank_angle"][:-1],
             crank_speed=rows.following_speed("crank"),
-            distance=distance,
+            distance=rows[f"{ROAD}_angle"][:-1],
             speed=speed,
             coasting=free,
-            muscle_work=self._work(power),
-            road_work=self._work(resistance * speed),
+            muscle_work=self._work(self.muscle_power()),
+            road_work=self._work(self.resistance(speed) * speed),
         )
+
+    def muscle_power(self) -> FloatArray:
+        """Of all joint moments, W."""
+        moment, speed = (lambda joint: self.sensors[f"{joint}_moment"][:-1]), self.sensors.following_speed
+        return np.asarray(sum(moment(joint) * speed(joint) for joint in joint_drives(TWO_LEGS)))
+
+    def resistance(self, speed: FloatArray) -> FloatArray:
+        """Force of the road against going forward at these speeds (m/s), N."""
+        load = self.ride.load
+        return np.asarray(load.rolling * np.sign(speed) + load.climb + load.drag * speed * np.abs(speed))
 
     def _work(self, power: FloatArray) -> FloatArray:
         """Energy since the start, J."""
@@ -64,9 +73,11 @@ class RoadRun:
     @property
     def lost(self) -> float:
         """Muscle work that neither the road took nor motion and height hold at the end, J: the scheme's error."""
-        trace, (before, after) = self.trace, (self.run.start_energy, self.run.end_energy)
-        climbed = self.ride.load.climb * float(trace.distance[-1])  # height of the whole, which the road took
-        return float(trace.muscle_work[-1] - trace.road_work[-1]) + climbed - (sum(after) - sum(before))
+        speed = self.sensors.following_speed(ROAD)
+        friction = self.resistance(speed) - self.ride.load.climb  # the height is a part of the energy
+        power = self.muscle_power() - friction * speed
+        work = float(self._work(power)[-1] + power[-1] * self.timestep)  # the energy is that after the last step
+        return work - (sum(self.run.end_energy) - self.start_energy)
 
     @cached_property
     def loop_gap_max(self) -> float:
@@ -93,12 +104,21 @@ def ride_on_road(
     spec = build_road_mjcf(ride, timestep, drawn=False)
     edit(spec)
     model, loop = spec.compile(), make_loop(control or partial(road_control, ride))
+    start_energy = _keyframe_energy(model)
     _start_half_a_step_early(model, ride)
     if ride.launch:
         probe = Sensors(model, run_loop(model, loop, PRE_ROLL, pre_roll=0).sensors)
         gain = {name: float(np.diff(probe[f"{name}_speed"][PRE_ROLL // 2 : -1]).mean()) for name in (ROAD, "crank")}
         _start_half_a_step_early(model, ride, {name: change / timestep for name, change in gain.items()})
-    return RoadRun(ride, timestep, model, run_loop(model, loop, round(ride.duration / timestep) + 1, pre_roll=0))
+    return RoadRun(
+        ride, timestep, model, start_energy, run_loop(model, loop, round(ride.duration / timestep) + 1, pre_roll=0)
+    )
+
+
+def _keyframe_energy(model: mujoco.MjModel) -> float:
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    return sum(energy(model, data))
 
 
 def _start_half_a_step_early(model: mujoco.MjModel, ride: Ride, gain: dict[str, float] | None = None) -> None:

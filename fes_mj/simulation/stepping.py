@@ -118,14 +118,14 @@ def run_loop(model: mujoco.MjModel, loop: Loop, steps: int, pre_roll: int = PRE_
     mujoco.set_mju_user_warning(lambda _: None)  # MuJoCo would write MUJOCO_LOG.TXT into the user's folder
     try:
         before, _ = loop(model, data, pre_roll)
-        start = energy(model, data)
+        start = energy(model, data, model.opt.timestep / 2)
         sensors, fields = loop(model, data, steps)
         if any(warning.number for warning in data.warning):
             raise UnstableError(
                 f"{model.names[: model.names.index(0)].decode()}: the simulation became unstable "
                 f"with a time step of {1e3 * model.opt.timestep:.3g} ms; give a smaller --timestep"
             )
-        end = energy(model, data)
+        end = energy(model, data, model.opt.timestep / 2)
         mujoco.mj_forward(model, data)
     finally:
         mujoco.set_mju_user_warning(previous)
@@ -133,9 +133,15 @@ def run_loop(model: mujoco.MjModel, loop: Loop, steps: int, pre_roll: int = PRE_
     return Run(np.vstack([before[-2:-1], sensors]), start, end, fields)
 
 
-def energy(model: mujoco.MjModel, data: mujoco.MjData) -> tuple[float, float]:
-    """Potential and kinetic energy of the current state, J; state and accelerations are left alone."""
+def energy(model: mujoco.MjModel, data: mujoco.MjData, lag: float = 0.0) -> tuple[float, float]:
+    """Potential and kinetic energy of the current state, J; state and accelerations are left alone.
+
+    lag: time by which the speeds are behind the positions, s.
+    """
+    held = data.qvel.copy()
+    data.qvel += lag * data.qacc
     mujoco.mj_fwdPosition(model, data)
     mujoco.mj_energyPos(model, data)
     mujoco.mj_energyVel(model, data)
+    data.qvel[:] = held
     return float(data.energy[0]), float(data.energy[1])
