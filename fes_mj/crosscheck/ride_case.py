@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 from importlib.metadata import version
-from typing import Any
+from typing import Any, ClassVar
 
 import mujoco
 import numpy as np
@@ -38,11 +38,13 @@ class RideCase(Brief):
     ride: Ride
     timestep: float = TIMESTEP
 
-    # The steps.
-
     @property
     def brief(self) -> str:
         return self.ride.name
+
+    # The steps.
+
+    record: ClassVar[type[RoadRun]] = RoadRun  # what is made of MuJoCo's sensors
 
     def edit_model(self, spec: Spec) -> None:
         """Change the MuJoCo model before it is compiled; nothing is changed here."""
@@ -54,7 +56,7 @@ class RideCase(Brief):
     @cached_property
     def simulation(self) -> RoadRun:
         """By MuJoCo. Raises UnstableError if it breaks down."""
-        return ride_on_road(self.ride, self.timestep, edit=self.edit_model, control=self.control)
+        return ride_on_road(self.ride, self.timestep, edit=self.edit_model, control=self.control, record=self.record)
 
     @cached_property
     def reference(self) -> Trace:

@@ -3,13 +3,14 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, partial
+from typing import ClassVar
 
 import mujoco
 import numpy as np
 from scipy.integrate import cumulative_trapezoid
 
 from fes_mj.common.arrays import FloatArray
-from fes_mj.linkage.legs import TWO_LEGS
+from fes_mj.linkage.legs import TWO_LEGS, Leg
 from fes_mj.riding.ride import Ride
 from fes_mj.riding.trace import Trace
 from fes_mj.simulation.appearance import Spec
@@ -34,6 +35,7 @@ class RoadRun:
     model: mujoco.MjModel
     start_energy: float
     run: Run
+    legs: ClassVar[tuple[Leg, ...]] = TWO_LEGS  # whose muscles count
 
     @cached_property
     def sensors(self) -> Sensors:
@@ -58,8 +60,9 @@ class RoadRun:
 
     def muscle_power(self) -> FloatArray:
         """Of all joint moments, W."""
-        moment, speed = (lambda joint: self.sensors[f"{joint}_moment"][:-1]), self.sensors.following_speed
-        return np.asarray(sum(moment(joint) * speed(joint) for joint in joint_drives(TWO_LEGS)))
+        rows = self.sensors
+        powers = [rows[f"{joint}_moment"][:-1] * rows.following_speed(joint) for joint in joint_drives(self.legs)]
+        return np.asarray(np.sum(powers, axis=0))
 
     def resistance(self, speed: FloatArray) -> FloatArray:
         """Force of the road against going forward at these speeds (m/s), N."""
@@ -93,11 +96,13 @@ def ride_on_road(
     edit: Callable[[Spec], None] = lambda _: None,
     control: MakeControl | None = None,
     make_loop: Callable[[MakeControl], Loop] = road_loop,
+    record: type[RoadRun] = RoadRun,
 ) -> RoadRun:
     """Ride in MuJoCo.
 
     edit: changes the model before it is compiled. control: another than road_control. make_loop: another loop than
-    road_loop. Raises InputError as trace.ride, UnstableError if the integration breaks down.
+    road_loop. record: what is made of the sensors. Raises InputError as trace.ride, UnstableError if the integration
+    breaks down.
     """
     for leg in TWO_LEGS:
         turning_in_range(ride.design, ride.moments.of_leg(leg.prefix).measured_on)
@@ -110,7 +115,7 @@ def ride_on_road(
         probe = Sensors(model, run_loop(model, loop, PRE_ROLL, pre_roll=0).sensors)
         gain = {name: float(np.diff(probe[f"{name}_speed"][PRE_ROLL // 2 : -1]).mean()) for name in (ROAD, "crank")}
         _start_half_a_step_early(model, ride, {name: change / timestep for name, change in gain.items()})
-    return RoadRun(
+    return record(
         ride, timestep, model, start_energy, run_loop(model, loop, round(ride.duration / timestep) + 1, pre_roll=0)
     )
 

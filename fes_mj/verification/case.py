@@ -9,11 +9,13 @@ from typing import Any, NamedTuple
 from fes_mj.crosscheck.ride_case import RideCase
 from fes_mj.crosscheck.turn_case import Case
 from fes_mj.crosscheck.turn_output import turn_summary
-from fes_mj.riding.ride import TRANSMISSIONS, Ride
+from fes_mj.riding.ride import TRANSMISSIONS, Ride, Road
 from fes_mj.verification.energy import Audit, audit
 from fes_mj.verification.references import Curves, differences, exact_curves
 from fes_mj.verification.refinement import Refinement, refine
 
+STEEP = Road(slope=0.15)  # no leg climbs it: the tricycle stops and rolls back
+STEEP_DURATION = 3.0  # s
 RIDE_DURATION = 5.0  # s: some eight turns; studies/ride_verification.py rides a minute
 # Of turn_summary, what a table of runs shows.
 _ROW = (
@@ -58,10 +60,12 @@ class VerificationCase(Case):
 
     @cached_property
     def rides(self) -> list[RideCase]:
-        """Short rides on the flat with either transmission, launched at the speed of the cadence."""
+        """Short rides launched at the speed of the cadence: flat with either transmission, and rolling back."""
         ride = Ride(self.design, self.moments, duration=RIDE_DURATION)
         ride = replace(ride, launch=self.cadence * ride.travel)
-        return [self.ride_case(replace(ride, transmission=kind)) for kind in TRANSMISSIONS]
+        flat = [replace(ride, transmission=kind) for kind in TRANSMISSIONS]
+        steep = replace(ride, transmission="fixed", road=STEEP, duration=STEEP_DURATION)
+        return [self.ride_case(one) for one in (*flat, steep)]
 
     @cached_property
     def audit(self) -> Audit:

@@ -7,7 +7,7 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache, cached_property
-from typing import Any, TypeAlias
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -27,8 +27,9 @@ from fes_mj.simulation.mjcf import SERVO, SERVO_GAIN
 from fes_mj.simulation.time_step import steps_per_turn
 from fes_mj.statics.equilibrium import equilibrium, joint_couples, moment_arm
 from fes_mj.verification.faults import Fault
+from fes_mj.verification.model_edits import Steps, in_model
+from fes_mj.verification.ride_mistakes import RIDE_STEPS
 
-Steps: TypeAlias = dict[str, Any]
 _FILE = DATA / "faults.toml"
 
 
@@ -133,21 +134,6 @@ class LateFeedback(TorqueMap):
             return moment(*last.pop(0))
 
         return late
-
-
-def in_model(kind: str, name: str = "", **changes: Any) -> Steps:
-    """Change attributes of the elements of a kind ("bodies", "joints", ...), of all or of the one with this name.
-
-    changes: a new value, or a function of the old one. The kind "option" and "compiler" are elements themselves.
-    """
-
-    def edit(_: Pipeline, spec: Any) -> None:
-        found = getattr(spec, kind)
-        for element in found if hasattr(found, "__len__") else [found]:
-            for attribute, new in changes.items() if name in ("", getattr(element, "name", "")) else ():
-                setattr(element, attribute, new(getattr(element, attribute)) if callable(new) else new)
-
-    return {"edit_model": edit}
 
 
 def times(*factors: float) -> Callable[[FloatArray], FloatArray]:
@@ -260,6 +246,7 @@ def faults() -> tuple[Fault, ...]:
             row["mistake"],
             tuple(row["guards"]),
             steps=STEPS.get(name, {}),
+            ride_steps=RIDE_STEPS.get(name, {}),
             edit=EDITS.get(name),
             kinds=tuple(row.get("kinds", ALL)),
         )

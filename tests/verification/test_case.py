@@ -10,7 +10,7 @@ from fes_mj.simulation import stepping
 from fes_mj.verification.case import VerificationCase
 from fes_mj.verification.suite import FULL, verify
 
-MOST_RUNS = 12 + 4  # of the bench, and two rides with a probe of their start each
+MOST_RUNS = 12 + 6  # of the bench, and three rides with a probe of their start each
 
 
 def test_a_full_verification_makes_few_runs(monkeypatch: pytest.MonkeyPatch) -> None:
