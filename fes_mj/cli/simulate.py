@@ -84,7 +84,7 @@ def _content(case: Case) -> dict[str, Any]:
     """The result as JSON names and units it."""
     from fes_mj.crosscheck.turn_output import turn_summary
 
-    return turn_summary(case) | summary(error_budget(*case.statics))
+    return turn_summary(case) | summary(error_budget(*case.statics.turns))
 
 
 def _check_speed(speed: float, cadence: float) -> None:
@@ -102,19 +102,19 @@ def _print(case: Case, verbose: bool) -> None:
 
     run = case.simulation
     dynamic = (
-        tables.with_error(run.power_mean, case.power_sd),  # the mean is the same functional of the moments
+        tables.with_error(run.power_mean, case.statics.power_sd),  # the mean is the same functional of the moments
         f"{2 * np.pi * run.power_mean / run.cadence:.3f}",
         *(tables.span(ends) for ends in run.joint_range_deg),
     )
-    sides = ("",) if len(case.statics) == 1 else (", right", ", left")
+    sides = ("",) if len(case.statics.turns) == 1 else (", right", ", left")
     names = [name for name, _ in tables.power_rows(case.static)]
-    columns = [[value for _, value in tables.power_rows(turn)] for turn in case.statics]
+    columns = [[value for _, value in tables.power_rows(turn)] for turn in case.statics.turns]
     print_table(
         tables.heading(case.static, len(run.legs)),
         ("", *(f"quasi-static{side}" for side in sides), "dynamic"),
         [*zip(names, *columns, dynamic, strict=True)],
     )
-    tables.print_budget(*case.statics)
+    tables.print_budget(*case.statics.turns)
     quasi, measured = (tables.turn_rows(content) for content in (case.static.summary(), turn_summary(case)))
     turn = [(name, value, other) for (name, value), (_, other) in zip(quasi, measured, strict=True)]
     together = "dynamic" if len(run.legs) == 1 else "dynamic, both legs"
@@ -125,8 +125,8 @@ def _print(case: Case, verbose: bool) -> None:
         terms = [(name.replace("_", " "), f"{value:.5f}") for name, value in run.energy.as_json().items()]
         print_table("Energy over the measured turns", ("term", "J"), terms)
         print_table("Constraint forces", ("loop", "mean N", "largest N"), tables.force_rows(run.loop_force))
-    for quasi_static in case.statics:
-        tables.print_notes(quasi_static, f"{quasi_static.moments.name}: " if len(case.statics) > 1 else "")
+    for quasi_static in case.statics.turns:
+        tables.print_notes(quasi_static, f"{quasi_static.moments.name}: " if len(case.statics.turns) > 1 else "")
     tables.conclude_checks("Dynamic and static", case.checks, f": mean power differs by {case.difference_text}")
 
 

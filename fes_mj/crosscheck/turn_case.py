@@ -1,6 +1,5 @@
 """Dynamic against static: what is measured of a case, what is compared in it, the verdict."""
 
-import math
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -14,6 +13,7 @@ from fes_mj.crosscheck.pipeline import Pipeline, Setup
 from fes_mj.simulation.bench import BenchOptions, Simulation
 from fes_mj.simulation.mjcf import Physics
 from fes_mj.statics.joint_forces import JointForces
+from fes_mj.statics.legs import LegTurns
 from fes_mj.statics.turn import TURN_POINTS, QuasiStatic
 
 # The near-massless variant keeps so much of all masses that inertia adds this power to the quasi-static curve. With
@@ -62,23 +62,15 @@ class Case(Brief, Setup):
         return JointForces(self.static)
 
     @cached_property
-    def statics(self) -> tuple[QuasiStatic, ...]:
-        """The quasi-static turn of every leg whose moments are its own."""
-        if self.moments.left is None or self.legs == 1:
-            return (self.static,)
-        return self.static, self.steps.quasi_static(TURN_POINTS, "left_")
+    def statics(self) -> LegTurns:
+        """The quasi-static turns of all legs."""
+        own = () if self.moments.left is None or self.legs == 1 else (self.steps.quasi_static(TURN_POINTS, "left_"),)
+        return LegTurns((self.static, *own), self.legs)
 
     @property
     def static_power_mean(self) -> float:
         """Quasi-static mean crank power of one leg, on average of the legs, W."""
-        return float(np.mean([turn.power_mean for turn in self.statics]))
-
-    @property
-    def power_sd(self) -> float | None:
-        """Its standard deviation, W: the errors of two files of moments are independent. None where it is not known."""
-        deviations = [turn.power_sd for turn in self.statics]
-        known = [deviation for deviation in deviations if deviation is not None]
-        return math.hypot(*known) / len(known) if len(known) == len(deviations) else None
+        return self.statics.power_mean
 
     @cached_property
     def simulation(self) -> Simulation:

@@ -21,7 +21,7 @@ def turn_summary(case: Case) -> dict[str, Any]:
         "knee_range_deg": run.joint_range_deg.knee,
         "hip_range_deg": run.joint_range_deg.hip,
         **power_characteristics(run.power, run.turns),
-        "power_sd_W": case.power_sd,
+        "power_sd_W": case.statics.power_sd,
         "static_power_mean_W": case.static_power_mean,
         "relative_difference": case.relative_difference,
         "loop_gap_max_m": run.loop_gap_max,

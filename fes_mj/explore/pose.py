@@ -9,8 +9,7 @@ from fes_mj.common.style import hex_colour
 from fes_mj.linkage.assembly import DYADS, LEAST_CLEARANCE, clearances
 from fes_mj.linkage.design import BODIES, Design
 from fes_mj.linkage.kinematics import close_dyad, positions
-from fes_mj.simulation.appearance import PARTS
-from fes_mj.viewing.bars import bars
+from fes_mj.simulation.shapes import PARTS, Bar, back_to_front
 
 Ends = dict[str, tuple[ComplexArray, ComplexArray]]  # body -> its origin and tip over crank angle, m
 
@@ -67,11 +66,17 @@ def as_json(design: Design, crank_angle: FloatArray) -> dict[str, Any]:
         "bodies": {body: [_plane(end) for end in pair] for body, pair in bodies.items()},
         "pedal": _plane(bodies["shank"][1]),
         "pedal_on": design.linkage.architecture.pedal_body,
-        "bars": [bar.as_json() for bar in bars(design)],
+        "bars": [bar_json(bar) for bar in back_to_front(design)],
         "pins": [pin(joint, bodies) for joint in design.linkage.architecture.joints],
         "dyads": [pair for pair in DYADS if pair[0] in bodies],
         "failing_deg": None if failing is None else float(np.degrees(failing)),
     }
+
+
+def bar_json(bar: Bar) -> dict[str, Any]:
+    """Of a bar its body, ends in the body's frame and width, m, and colour."""
+    line = [bar.start.real, bar.start.imag, bar.end.real, bar.end.imag]
+    return {"body": bar.body, "line": line, "width": bar.width, "colour": bar.colour}
 
 
 def pin(joint: str, bodies: Ends) -> dict[str, Any]:

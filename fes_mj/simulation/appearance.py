@@ -6,17 +6,17 @@ themselves all lie in one plane.
 
 import math
 from collections.abc import Sequence
-from typing import Any, NamedTuple, TypeAlias
+from typing import Any, TypeAlias
 
 import mujoco
 import numpy as np
 
-from fes_mj.common.style import COLOURS, LINKS, rgb
 from fes_mj.linkage import kinematics
 from fes_mj.linkage.assembly import bounding_box
 from fes_mj.linkage.design import BODIES, Design
 from fes_mj.linkage.legs import Leg
 from fes_mj.linkage.segments import foot_points
+from fes_mj.simulation.shapes import BACKREST, PARTS, SEAT_DEPTH, Bar, bars
 
 Spec: TypeAlias = Any  # mujoco.MjSpec and its elements, which have no types
 
@@ -26,35 +26,7 @@ LAYERS = {"frame": -0.13, "leg": -0.065, "coupler": 0.0, "crank": 0.025, "rocker
 PIN_END = 0.012  # m that a pin stands out on either side of what it joins
 LIMB_PIN_END = 0.07  # m, the same for the joints inside a leg
 
-_CAPSULE, _BOX = mujoco.mjtGeom.mjGEOM_CAPSULE, mujoco.mjtGeom.mjGEOM_BOX
-_CYLINDER = mujoco.mjtGeom.mjGEOM_CYLINDER
-
-
-class Part(NamedTuple):
-    """A default class of geoms and the material it wears."""
-
-    shape: mujoco.mjtGeom
-    size: float  # m: radius of a capsule or cylinder, half the thickness of a pad
-    colour: tuple[float, float, float]  # RGB, each 0 to 1
-
-
-PARTS = {
-    "thigh": Part(_CAPSULE, 0.065, rgb(LINKS["thigh"])),
-    "shank": Part(_CAPSULE, 0.048, rgb(LINKS["shank"])),
-    "boot": Part(_CAPSULE, 0.052, (0.27, 0.30, 0.35)),
-    "hip": Part(_CYLINDER, 0.028, rgb(COLOURS["hip"])),
-    "knee": Part(_CYLINDER, 0.028, rgb(COLOURS["knee"])),
-    "crank": Part(_CAPSULE, 0.011, rgb(LINKS["crank"])),
-    "rocker": Part(_CAPSULE, 0.011, rgb(LINKS["rocker"])),
-    "coupler": Part(_CAPSULE, 0.011, rgb(LINKS["coupler"])),
-    "pin": Part(_CYLINDER, 0.011, (0.22, 0.23, 0.26)),
-    "chainring": Part(_CYLINDER, 0.075, (0.36, 0.38, 0.42)),
-    "frame": Part(_CAPSULE, 0.018, (0.64, 0.67, 0.70)),
-    "seat": Part(_BOX, 0.02, (0.45, 0.48, 0.53)),
-}
-BACKREST = 0.45  # m
-SEAT_LENGTH, SEAT_WIDTH = 0.25, 0.32  # m
-SEAT_DEPTH = 0.12  # m from the hip down to the seat
+SEAT_WIDTH = 0.32  # m
 FIELD_OF_VIEW = 30.0  # deg, vertical
 ASPECT = 4 / 3  # the narrowest picture that still shows everything
 MARGIN = 0.14  # m around the joints, for the flesh, the boot and the seat
@@ -72,8 +44,9 @@ def draw(spec: Spec, design: Design, legs: Sequence[Leg]) -> None:
     """Give every body of the assembled model its geoms, and the model the camera `side`, which sees the whole turn."""
     middle = float(np.mean([leg.lateral + leg.outwards * LAYERS["frame"] for leg in legs]))
     for leg in legs:
-        _draw_limb(spec, design, leg)
-        _draw_links(spec, design, leg)
+        for bar in bars(design):
+            if bar.body:
+                _draw_bar(spec, bar, leg)
         _draw_pins(spec, design, leg, middle)
     _draw_frame(spec, design, middle)
     _add_camera(spec, design)
@@ -88,32 +61,15 @@ def _bar(spec: Spec, body: str, part: str, name: str, start: tuple[complex, floa
         spec.body(body).add_geom(spec.find_default(part), name=name, fromto=rounded)
 
 
-def _draw_limb(spec: Spec, design: Design, leg: Leg) -> None:
-    across = leg.outwards * LAYERS["leg"]
-    ankle, heel, toe = foot_points(design)
-    sole, radius = (toe - heel) / abs(toe - heel), PARTS["boot"].size
-    for part, body, name, start, end in (
-        ("thigh", "thigh", "thigh", 0j, design.rider.thigh),
-        ("shank", "shank", "shank", 0j, ankle),
-        ("boot", "shank", "boot", heel + radius * sole, toe - radius * sole),
-        ("boot", "shank", "boot_shaft", 0.6 * ankle, ankle),
-    ):
-        _bar(spec, leg.prefix + body, part, leg.prefix + name, (start, across), (end, across))
-
-
-def _draw_links(spec: Spec, design: Design, leg: Leg) -> None:
-    linkage = design.linkage
-    for body in linkage.architecture.bodies[2:]:
-        tip, owner, across = complex(design.link_lengths[body]), leg.prefix + body, leg.outwards * LAYERS[body]
-        if body == "crank":  # the legs share it: an arm each
-            tip, owner, across = tip * np.exp(-1j * leg.lag), "crank", leg.lateral + across
-        bars = {"": (0j, tip)}
-        if body == linkage.architecture.pedal_body != "crank":
-            pedal = tip * complex(linkage.pedal_offset)
-            # the coupler's pedal arm stands off it, so a third bar makes it a triangle; the rocker's lies in line
-            bars |= {"_pedal_arm": (0j, pedal), "_brace": (pedal, tip)} if body == "coupler" else {"": (0j, pedal)}
-        for suffix, (start, end) in bars.items():
-            _bar(spec, owner, body, f"{leg.prefix}{body}{suffix}_bar", (start, across), (end, across))
+def _draw_bar(spec: Spec, bar: Bar, leg: Leg) -> None:
+    """A bar of the leg or of its linkage, in its layer; the legs share the crank, an arm each."""
+    name, across = leg.prefix + bar.name, leg.outwards * LAYERS.get(bar.body, LAYERS["leg"])
+    if bar.body == "crank":
+        arm = np.exp(-1j * leg.lag)
+        across += leg.lateral
+        _bar(spec, "crank", bar.part, name, (bar.start * arm, across), (bar.end * arm, across))
+    else:
+        _bar(spec, leg.prefix + bar.body, bar.part, name, (bar.start, across), (bar.end, across))
 
 
 def _draw_pins(spec: Spec, design: Design, leg: Leg, middle: float) -> None:
@@ -136,22 +92,20 @@ def _draw_pins(spec: Spec, design: Design, leg: Leg, middle: float) -> None:
 
 def _draw_frame(spec: Spec, design: Design, middle: float) -> None:
     """Seat, tube from it over the fixed pivots to the crank, and the chainring."""
-    linkage, back = design.linkage, np.exp(1j * design.linkage.seat_angle)
-    corner = SEAT_DEPTH * (0.5 - 1j)
     frame, pad = spec.body("tricycle"), spec.find_default("seat")
-    for name, along in (("seat", -SEAT_LENGTH), ("backrest", BACKREST * back)):
-        centre, turn = corner + along / 2, -float(np.angle(along)) / 2  # half the turn about +y
-        frame.add_geom(
-            pad,
-            name=name,
-            pos=[round(value, 4) for value in (centre.real, middle, centre.imag)],
-            quat=[round(value, 6) + 0.0 for value in (math.cos(turn), 0.0, math.sin(turn), 0.0)],
-            size=(abs(along) / 2, SEAT_WIDTH / 2, PARTS["seat"].size),
-        )
-    tubes = {"seat_tube": (corner, linkage.ground), "boom": (linkage.ground, linkage.crank_centre)}
-    for name, (start, end) in tubes.items():
-        if start != end:  # a TRT's ground link ends at the crank
-            _bar(spec, "tricycle", "frame", name, (start, middle), (end, middle))
+    for bar in bars(design):
+        if bar.part == "seat":
+            along = bar.end - bar.start
+            centre, turn = bar.start + along / 2, -float(np.angle(along)) / 2  # half the turn about +y
+            frame.add_geom(
+                pad,
+                name=bar.name,
+                pos=[round(value, 4) for value in (centre.real, middle, centre.imag)],
+                quat=[round(value, 6) + 0.0 for value in (math.cos(turn), 0.0, math.sin(turn), 0.0)],
+                size=(abs(along) / 2, SEAT_WIDTH / 2, PARTS["seat"].size),
+            )
+        elif not bar.body:
+            _bar(spec, "tricycle", bar.part, bar.name, (bar.start, middle), (bar.end, middle))
     _bar(spec, "crank", "chainring", "chainring", (0j, middle - 0.003), (0j, middle + 0.003))
 
 

@@ -15,7 +15,7 @@ from fes_mj.common.style import COLOURS, CRANK_LABEL, INK, LINKS, STYLE, X_LABEL
 from fes_mj.crosscheck.turn_case import Case
 from fes_mj.linkage.design import BODIES, Design
 from fes_mj.linkage.kinematics import FULL_TURN, positions, solve
-from fes_mj.viewing.bars import bars
+from fes_mj.simulation.shapes import back_to_front
 
 PLOTTED = 720  # points of a curve at most
 # Of pages: text stays readable at the width of a phone
@@ -104,14 +104,11 @@ def draw_linkage(axes: Axes, design: Design, crank_angle: float, paths: Sequence
     turn = positions(design, np.append(FULL_TURN, 2 * np.pi))
     pose = solve(design, np.array([crank_angle]))
     at = {name: complex(np.ravel(jet.value)[0]) for name, jet in pose.points.items()}
-    for bar in bars(design):
-        if abs(bar.end - bar.start) > 0:  # a TRT's frame ends at the crank
-            origin, direction = (
-                (at[BODIES[bar.body][0]], complex(pose.direction(bar.body)[0])) if bar.body else (0j, 1.0)
-            )
-            outline = bar.outline(origin, direction)
-            label = bar.body if bar.part in LINKS and bar.body not in axes.get_legend_handles_labels()[1] else None
-            axes.fill(outline.real, outline.imag, color=bar.colour, lw=0, label=label)
+    for bar in back_to_front(design):
+        origin, direction = (at[BODIES[bar.body][0]], complex(pose.direction(bar.body)[0])) if bar.body else (0j, 1.0)
+        outline = bar.outline(origin, direction)
+        label = bar.body if bar.part in LINKS and bar.body not in axes.get_legend_handles_labels()[1] else None
+        axes.fill(outline.real, outline.imag, color=bar.colour, lw=0, label=label)
     for name in (name for name in paths if name in turn):
         axes.plot(turn[name].real, turn[name].imag, color=INK, lw=0.8, ls=(0, (4, 2)))
     for name, point in at.items():

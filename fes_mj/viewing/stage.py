@@ -14,7 +14,8 @@ from fes_mj.linkage.assembly import bounding_box
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.legs import LEGS, Leg
 from fes_mj.linkage.segments import foot_points
-from fes_mj.simulation.appearance import BACKREST, PARTS, SEAT_DEPTH, SEAT_LENGTH, Spec
+from fes_mj.simulation.appearance import Spec
+from fes_mj.simulation.shapes import PARTS, bars
 
 SIDE = 720  # pixels; pictures are square
 # Drawn so many times as large and reduced, without MuJoCo's own smoothing of edges, which takes longer.
@@ -74,9 +75,8 @@ def _moving(design: Design) -> dict[str, ComplexArray]:
 
 def _extent(design: Design) -> dict[str, ComplexArray]:
     """All that is seen: what moves, the seat, the arrow."""
-    corner = SEAT_DEPTH * (0.5 - 1j)
-    back = corner + BACKREST * np.exp(1j * design.linkage.seat_angle)
-    return _moving(design) | {"seat": np.array([corner - SEAT_LENGTH, back]), "arrow": turning_arrow(design)}
+    seat = np.array([bar.end for bar in bars(design) if bar.part == "seat"])
+    return _moving(design) | {"seat": seat, "arrow": turning_arrow(design)}
 
 
 def turning_arrow(design: Design) -> ComplexArray:

@@ -6,15 +6,12 @@ import pytest
 import fes_mj
 from fes_mj.common.style import LINKS, hex_colour, rgb
 from fes_mj.linkage.segments import foot_points
-from fes_mj.simulation.appearance import PARTS
-from fes_mj.viewing.bars import bars
+from fes_mj.simulation.shapes import PARTS, back_to_front, bars
 
 
 def test_an_outline_is_half_a_thickness_from_its_line(design: fes_mj.Design) -> None:
     origin, direction = 0.3 - 0.2j, np.exp(0.7j)
     for bar in bars(design):
-        if bar.start == bar.end:
-            continue
         local = (bar.outline(origin, direction) - origin) / direction  # back in the body's frame
         along = (bar.end - bar.start) / abs(bar.end - bar.start)
         offset = (local - bar.start) / along
@@ -23,12 +20,12 @@ def test_an_outline_is_half_a_thickness_from_its_line(design: fes_mj.Design) -> 
 
 
 def test_links_wear_the_videos_colours_and_the_boot_holds_the_foot(design: fes_mj.Design) -> None:
-    drawn = [*bars(design)]
+    drawn = back_to_front(design)
     for bar in drawn:
         if bar.part in LINKS:
             assert bar.colour == hex_colour(rgb(LINKS[bar.part]))
     _, heel, toe = foot_points(design)
-    boot = drawn[[bar.part for bar in drawn].index("boot") + 1].outline(0j, 1.0)
+    boot = next(bar for bar in drawn if bar.name == "boot").outline(0j, 1.0)
     sole = (toe - heel) / abs(toe - heel)
     reach = ((boot - heel) / sole).real  # with its round ends from heel to toe
     assert (reach.min(), reach.max()) == pytest.approx((0, abs(toe - heel)), abs=1e-9)
