@@ -326,6 +326,7 @@ def test_extreme_but_allowed_numbers_end_in_a_verdict(tmp_path: Path, capsys: py
         assert captured.out == ""
 
 
+@pytest.mark.long
 def test_moments_that_do_nothing_are_checked_like_others(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "zero.csv"
     path.write_text("crank_angle_deg,knee_Nm,hip_Nm\n0,0,0\n180,0,0\n")

@@ -31,7 +31,9 @@ def test_twelve_samples_give_three_harmonics(count: int) -> None:
         assert np.abs(fourier(TURN) @ fit(samples, curve(samples)) - curve(TURN)).max() < 1e-3
 
 
-@pytest.mark.parametrize(("count", "noise"), [(36, 0.1), (36, 1.0), (200, 0.3), (50_000, 1.0)])
+@pytest.mark.parametrize(
+    ("count", "noise"), [(36, 0.1), (36, 1.0), (200, 0.3), pytest.param(50_000, 1.0, marks=pytest.mark.long)]
+)
 def test_noisy_samples_are_averaged(count: int, noise: float) -> None:
     """Without knowing that the curve has three harmonics, it is found almost as well as least squares that know it."""
     random, misses, least = np.random.default_rng(0), [], []

@@ -60,6 +60,7 @@ def test_sd_of_power_ratio_and_difference_against_drawn_curves(moments: JointMom
     assert ratio_sd(result, base) == pytest.approx(np.std(np.divide(one, other)), rel=0.12)
 
 
+@pytest.mark.long
 def test_sd_with_a_torque_velocity_relation_against_drawn_curves() -> None:
     moments = replace(fes_mj.load_moments("p1p2"), torque_velocity=load_torque_velocity("hill"))
     design = fes_mj.load_design("d1")

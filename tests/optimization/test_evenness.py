@@ -46,6 +46,7 @@ def test_a_limit_on_the_ripple_takes_nothing_away_but_what_is_above_it() -> None
     assert 0 < within.feasible.sum() < without.feasible.sum()
 
 
+@pytest.mark.long
 def test_what_is_found_within_the_limit_rides_as_evenly_on_a_road() -> None:
     """By the equation of motion, on the slope that takes the mean power; air and friction vary a little with speed."""
     pytest.importorskip("cma")

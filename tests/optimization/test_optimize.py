@@ -8,8 +8,12 @@ from fes_mj.optimization.optimize import METHODS, optimize, run_searches
 from fes_mj.optimization.problem import make_problem
 from tests.optimization.conftest import problem_of
 
+QUICK = "random-pursuit"
 
-@pytest.mark.parametrize("method", METHODS)
+
+@pytest.mark.parametrize(
+    "method", [pytest.param(method, marks=() if method == QUICK else pytest.mark.long) for method in METHODS]
+)
 def test_a_seed_gives_the_same_design_and_the_budget_holds(method: str) -> None:
     if method == "cma-es":
         pytest.importorskip("cma")

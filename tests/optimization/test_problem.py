@@ -77,9 +77,12 @@ def test_verdicts_agree_with_one_design_at_a_time(name: str) -> None:
     [
         {},
         {"grashof_min": -0.1, "crank_min": 0.0, "rocker_min": 0.0, "gear_ratio_max": 100.0},
-        {"knee_deg": (-300.0, 300.0), "hip_deg": (-300.0, 300.0)},
-        {"hip_deg": (118.0, 170.0)},
-        {"polygon": 3 * np.array([-1 - 1j, 1 - 1j, 1 + 1j, -1 + 1j]), "hip_deg": (-300.0, 300.0)},
+        pytest.param({"knee_deg": (-300.0, 300.0), "hip_deg": (-300.0, 300.0)}, marks=pytest.mark.long),
+        pytest.param({"hip_deg": (118.0, 170.0)}, marks=pytest.mark.long),
+        pytest.param(
+            {"polygon": 3 * np.array([-1 - 1j, 1 - 1j, 1 + 1j, -1 + 1j]), "hip_deg": (-300.0, 300.0)},
+            marks=pytest.mark.long,
+        ),
     ],
 )
 @pytest.mark.parametrize("name", ["r1", "d1"])

@@ -39,6 +39,7 @@ def test_every_design_group_and_case_has_its_row() -> None:
     ]
 
 
+@pytest.mark.long
 def test_rows_are_todays() -> None:
     """Of D1 and the TRT with P1P3: powers of all together, and so the gain's probabilities, which are their ratios."""
     drawn = {}

@@ -15,6 +15,7 @@ def predictions() -> list[LeftOut]:
     return left_out(evidence, choose_hyperparameters(evidence))
 
 
+@pytest.mark.long
 def test_scores_in_closed_form_are_those_of_conditioning(predictions: list[LeftOut]) -> None:
     evidence = load_evidence()
     for group in GROUPS:
@@ -23,6 +24,7 @@ def test_scores_in_closed_form_are_those_of_conditioning(predictions: list[LeftO
         assert quick == pytest.approx(long, rel=1e-6, abs=1e-9)
 
 
+@pytest.mark.long
 def test_leaving_the_trt_out_leaves_its_twin_out_too(predictions: list[LeftOut]) -> None:
     """Without both, the TRT is predicted less surely than with the 15 W item."""
     for group in GROUPS:
@@ -32,6 +34,7 @@ def test_leaving_the_trt_out_leaves_its_twin_out_too(predictions: list[LeftOut])
             assert other[1] > 2 * one[1]
 
 
+@pytest.mark.long
 def test_stated_errors_hold(predictions: list[LeftOut]) -> None:
     """With the right errors the rms is 1, within the 0.2 that 12 scores leave, and the 0.3 of a group's six."""
     both = rms(np.array([each.scores for each in predictions]))

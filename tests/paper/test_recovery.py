@@ -14,6 +14,7 @@ def facts() -> Known:
     return known(load_evidence())
 
 
+@pytest.mark.long
 def test_the_text_leaves_no_evidence_behind(facts: Known) -> None:
     """Every number is recovered within two of its own errors, with the text as without."""
     for row, said in zip(evidence_table(facts).records(), facts.evidence, strict=True):
@@ -21,6 +22,7 @@ def test_the_text_leaves_no_evidence_behind(facts: Known) -> None:
         assert abs(float(row["with the text"].split()[0]) - said.value) < 2 * said.error, said.name
 
 
+@pytest.mark.long
 def test_what_ships_fulfils_what_was_said(facts: Known) -> None:
     for row in statement_table(facts).records():
         assert 0 < row["holds, % of curves"] <= 100

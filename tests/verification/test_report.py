@@ -45,6 +45,7 @@ def report(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
     return {name: path.read_text() for name, path in files.items()}
 
 
+@pytest.mark.long
 def test_the_report_needs_no_network(report: dict[str, str]) -> None:
     page = _Page()
     page.feed(report["html"])
@@ -53,6 +54,7 @@ def test_the_report_needs_no_network(report: dict[str, str]) -> None:
     assert not re.search(r"@import|url\((?!#)", report["html"])
 
 
+@pytest.mark.long
 def test_the_report_opens_with_the_verdict_and_shows_everything(report: dict[str, str]) -> None:
     page = _Page()
     page.feed(report["html"])
@@ -71,6 +73,7 @@ def test_the_report_opens_with_the_verdict_and_shows_everything(report: dict[str
     assert 'name="viewport"' in report["html"]
 
 
+@pytest.mark.long
 def test_junit_counts_every_verdict(report: dict[str, str]) -> None:
     suites = ElementTree.fromstring(report["xml"]).findall("testsuite")
     assert {suite.get("name") for suite in suites} >= {"d1 p1p2", "d1 p1p3", "A02", "injected faults"}
