@@ -1,7 +1,7 @@
-"""What each unknown contributes to the error of a mean power, and all of them together."""
+"""What each unknown contributes to the error of a mean power: alone, all of them together, and by Sobol's shares."""
 
 import math
-from collections.abc import Collection, Iterable
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -11,11 +11,14 @@ from fes_mj.budget.power import Rows, UncertainPower
 from fes_mj.budget.unknowns import EXTRAPOLATION, LAG, MASSES, MOMENTS, SPEED, priors
 from fes_mj.common.arrays import FloatArray, IntArray
 from fes_mj.common.brief import Brief
+from fes_mj.common.errors import require_extra
 from fes_mj.moments.uncertainty import standard_deviation, with_sd
 from fes_mj.statics.turn import QuasiStatic
 
 DRAWS = 256  # of a single command: a standard deviation is known to 4 % of itself, in 0.2 s
 _SEED = 2007
+SAMPLES = 1024  # times two more than there are unknowns are evaluated; a power of two, as Sobol's points ask
+_SOBOL_SEED = 2022
 _OF_A_LEG = (MOMENTS, EXTRAPOLATION)  # which legs with moments of their own do not share
 
 
@@ -51,22 +54,6 @@ class ErrorBudget(Brief):
 
     @property
     def brief(self) -> str:
-        return self.text
-
-    def summary(self) -> dict[str, Any]:
-        """The result as JSON names and units it."""
-        return {
-            "power_sd_total_W": self.total.sd,
-            "power_mean_drawn_W": self.total.mean,
-            "power_sd_at_its_speed_W": self.at_its_speed.sd,
-            "power_mean_drawn_at_its_speed_W": self.at_its_speed.mean,
-            "power_sd_by": self.by,
-            "draws": self.draws,
-            "draws_that_do_not_turn": self.total.failed,
-        }
-
-    @property
-    def text(self) -> str:
         """The result in a sentence, the largest contribution first, those below a hundredth of the total left out."""
         largest = sorted(((sd, name) for name, sd in self.by.items() if sd and sd > self.total.sd / 100), reverse=True)
         alone = ", ".join(f"{name} {sd:.2g}" for sd, name in largest)
@@ -97,7 +84,17 @@ def error_budget(*legs: QuasiStatic, draws: int = DRAWS) -> ErrorBudget | None:
 
 def summary(budget: ErrorBudget | None) -> dict[str, Any]:
     """The result as JSON names and units it; null where the error of the moments is not known."""
-    return budget.summary() if budget else dict.fromkeys(("power_sd_total_W", "power_sd_by"))
+    if budget is None:
+        return dict.fromkeys(("power_sd_total_W", "power_sd_by"))
+    return {
+        "power_sd_total_W": budget.total.sd,
+        "power_mean_drawn_W": budget.total.mean,
+        "power_sd_at_its_speed_W": budget.at_its_speed.sd,
+        "power_mean_drawn_at_its_speed_W": budget.at_its_speed.mean,
+        "power_sd_by": budget.by,
+        "draws": budget.draws,
+        "draws_that_do_not_turn": budget.total.failed,
+    }
 
 
 def unknowns(*legs: QuasiStatic) -> list[str]:
@@ -130,3 +127,35 @@ def _linear(legs: Iterable[QuasiStatic]) -> dict[str, float]:
     ]
     moments, outside = (math.hypot(*deviations) / len(pairs) for deviations in zip(*pairs, strict=True))
     return {MOMENTS: moments, EXTRAPOLATION: outside}
+
+
+class Share(NamedTuple):
+    """Of the variance: what an unknown explains alone, and with all in which it takes part; with their 95 % errors."""
+
+    first: float
+    first_error: float
+    total: float
+    total_error: float
+
+
+def shares(
+    power: Callable[[dict[str, IntArray]], FloatArray], names: Sequence[str], count: int, samples: int = SAMPLES
+) -> dict[str, Share]:
+    """Sobol's first and total order of a power, W, as a function of one of `count` realisations of each unknown.
+
+    Each unknown is a scalar in [0, 1): its place among the realisations, ordered by the power that each makes alone, so
+    that the power rises with it. Linkages that do not turn count as the mean. Raises MissingPartError without SALib.
+    """
+    require_extra("paper", "SALib")
+    from SALib.analyze import sobol as analysis
+    from SALib.sample import sobol as sampling
+
+    order = {name: np.argsort(power({name: np.arange(count)}), kind="stable") for name in names}
+    problem = {"num_vars": len(names), "names": [*names], "bounds": [[0, 1]] * len(names)}
+    points = sampling.sample(problem, samples, calc_second_order=False, seed=_SOBOL_SEED)
+    places = np.minimum((points * count).astype(np.int64), count - 1)
+    powers = power({name: order[name][places[:, column]] for column, name in enumerate(names)})
+    powers = np.where(np.isfinite(powers), powers, np.nanmean(powers))
+    result = analysis.analyze(problem, powers, calc_second_order=False, seed=_SOBOL_SEED)
+    columns = (result[key] for key in ("S1", "S1_conf", "ST", "ST_conf"))
+    return {name: Share(*map(float, row)) for name, *row in zip(names, *columns, strict=True)}

@@ -17,7 +17,7 @@ from fes_mj.budget.unknowns import (
     Realisations,
     realisations,
 )
-from fes_mj.common.arrays import BoolArray, FloatArray, IntArray
+from fes_mj.common.arrays import FloatArray, IntArray
 from fes_mj.linkage import kinematics
 from fes_mj.linkage.assembly import SCAN
 from fes_mj.linkage.design import Design
@@ -26,7 +26,7 @@ from fes_mj.linkage.kinematics import Motion
 from fes_mj.linkage.turning import batch_turning, leg_reach
 from fes_mj.linkage.variables import replaced
 from fes_mj.moments.drive import commanded
-from fes_mj.moments.fourier import HARMONICS
+from fes_mj.moments.fourier import fourier
 from fes_mj.statics.extrapolation import zone_powers
 from fes_mj.statics.turn import QuasiStatic
 
@@ -35,6 +35,7 @@ from fes_mj.statics.turn import QuasiStatic
 TABLE = 360  # crank angles of the measurement, between which moments are interpolated linearly
 BLOCK = 1000  # rows at once: their arrays take some ten megabytes
 _TURN = np.arange(TABLE) * (2 * np.pi / TABLE)
+_TERMS = fourier(_TURN).T
 
 Rows = Mapping[str, IntArray]  # by unknown which realisation; one that is missing is as it is known best
 
@@ -67,7 +68,9 @@ class UncertainPower:
 
     def _block(self, rows: Rows, without: Sequence[Collection[str]]) -> FloatArray:
         motion = kinematics.solve(self._design(rows), SCAN)
-        turns, count = _turns(motion), len(next(iter(rows.values())))
+        reach, swing = leg_reach(motion.design, motion.points["pedal"].value), np.ptp(motion.joint_angle.hip, axis=-1)
+        turns = batch_turning(motion.design, reach, np.atleast_1d(swing)).turns  # as every command decides
+        count = len(next(iter(rows.values())))
         cases = [{name: numbers for name, numbers in rows.items() if name not in omitted} for omitted in ((), *without)]
         return np.where(turns, [np.broadcast_to(self._mean(motion, case), count) for case in cases], np.nan)
 
@@ -80,31 +83,20 @@ class UncertainPower:
         """Mean power along a motion, W, shape (rows,) or (1,)."""
         torque, cadence, drawn = self.result.torque, self.result.cadence, self.drawn
         best = np.concatenate([*self.result.moments.coefficients])[None]
-        tables = _tables(drawn.coefficients[rows[MOMENTS]] if MOMENTS in rows else best)
+        coefficients = drawn.coefficients[rows[MOMENTS]] if MOMENTS in rows else best
         relation = drawn.relations.taken(rows[SPEED]) if SPEED in rows else self.result.moments.torque_velocity
         lag = drawn.lags[rows[LAG]] if LAG in rows else np.zeros((1, 1))
         drifts = drawn.drifts[rows[EXTRAPOLATION]] if EXTRAPOLATION in rows else np.zeros(ZONES)
         power = cadence * np.einsum("...z,...z->...", np.atleast_2d(zone_powers(motion, torque)), drifts)
         speeds, angles, rates = torque.reference.joint_rates(_TURN), motion.joint_angle, motion.joint_rate
-        for joint, table in zip(JOINTS, tables, strict=True):
+        for joint, terms in zip(JOINTS, np.split(coefficients, 2, axis=-1), strict=True):
             rate, measured = rates[joint], torque.reference.cadence
-            command = commanded(table, relation, joint, measured * speeds[joint], lag * measured)
+            command = commanded(terms @ _TERMS, relation, joint, measured * speeds[joint], lag * measured)
             moment = _answer(_read(command, torque.source_angle(joint, angles[joint], rate)), lag, cadence, measured)
             if relation:
                 moment = moment * relation.factor(joint, np.sign(moment) * cadence * rate)
             power = power + cadence * np.einsum("...a,...a->...", moment, rate) / rate.shape[-1]
         return np.asarray(power)
-
-
-def _tables(coefficients: FloatArray) -> list[FloatArray]:
-    """Knee and hip moment at TABLE crank angles of the measurement, N m, shape (curves, TABLE) each."""
-    tables: list[FloatArray] = []
-    for part in np.split(coefficients, 2, axis=-1):
-        spectrum = np.zeros((len(part), TABLE // 2 + 1), complex)
-        spectrum[:, 0] = part[:, 0]
-        spectrum[:, 1 : HARMONICS + 1] = (part[:, 1 : HARMONICS + 1] - 1j * part[:, HARMONICS + 1 :]) / 2
-        tables.append(np.fft.irfft(spectrum, TABLE, norm="forward"))
-    return tables
 
 
 def _read(table: FloatArray, source: FloatArray) -> FloatArray:
@@ -125,10 +117,3 @@ def _answer(command: FloatArray, lag: FloatArray, cadence: float, measured: floa
     ahead = np.atan(cadence * lag) - np.atan(measured * lag)
     transfer = np.exp(1j * order * ahead) / (1 + 1j * order * cadence * lag)
     return np.fft.irfft(np.fft.rfft(command) * transfer, command.shape[-1])
-
-
-def _turns(motion: Motion) -> BoolArray:
-    """Whether the designs of a motion over SCAN turn, as every command decides; shape (designs,), or (1,)."""
-    reach = leg_reach(motion.design, motion.points["pedal"].value)
-    swing = np.ptp(np.atleast_2d(motion.joint_angle.hip), axis=1)
-    return batch_turning(motion.design, reach, swing).turns

@@ -50,8 +50,8 @@ class Realisations:
 def realisations(design: Design, moments: JointMoments, count: int) -> Realisations:
     """So many of each unknown, for moments with a covariance. What designs share is the same in all of them."""
     random = np.random.default_rng(_SEED)
-    lags = prior(LAG)["longest_s"] * random.random((count, 1))
-    errors = prior(RIDER)["length_sd_m"] * random.standard_normal((2, count))
+    lags = priors()[LAG]["longest_s"] * random.random((count, 1))
+    errors = priors()[RIDER]["length_sd_m"] * random.standard_normal((2, count))
     legs = {name: component(design, name) + error for name, error in zip(("thigh", "shank"), errors, strict=True)}
     drifts = random.standard_normal((count, ZONES))
     return Realisations(
@@ -59,14 +59,9 @@ def realisations(design: Design, moments: JointMoments, count: int) -> Realisati
     )
 
 
-def prior(unknown: str) -> dict[str, Any]:
-    """What data/error_budget.toml says of an unknown."""
-    return priors()[unknown]
-
-
 @cache
 def priors() -> dict[str, dict[str, Any]]:
-    """The same of all of them, in the order of the file."""
+    """What data/error_budget.toml says of each unknown, in its order."""
     return dict(read_toml(_FILE, "priors of the error budget").content)
 
 
@@ -81,7 +76,7 @@ def _relations(moments: JointMoments, count: int) -> TorqueVelocity:
 
 @cache
 def _drawn_relations(count: int) -> TorqueVelocity:
-    return stacked(drawn_relations(prior(SPEED)["relation"], count, _SEED))
+    return stacked(drawn_relations(priors()[SPEED]["relation"], count, _SEED))
 
 
 def _coefficients(moments: JointMoments, count: int) -> FloatArray:

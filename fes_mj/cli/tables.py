@@ -94,7 +94,7 @@ def print_budget(*legs: QuasiStatic) -> None:
     from fes_mj.budget.budget import error_budget  # draws hundreds of linkages: as long as all else together
 
     if budget := error_budget(*legs):
-        say(f"error budget of the mean power: {budget.text}")
+        say(f"error budget of the mean power: {budget.brief}")
 
 
 def print_notes(result: QuasiStatic, of: str = "") -> None:

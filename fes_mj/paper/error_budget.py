@@ -5,9 +5,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from fes_mj.budget.budget import ErrorBudget, Spread, error_budget, together, unknowns
+from fes_mj.budget.budget import ErrorBudget, Share, Spread, error_budget, shares, together, unknowns
 from fes_mj.budget.power import UncertainPower
-from fes_mj.budget.shares import Share, shares
 from fes_mj.budget.unknowns import LAG, SPEED, priors
 from fes_mj.common.arrays import FloatArray
 from fes_mj.common.markdown import Table

@@ -5,7 +5,7 @@ import sys
 import numpy as np
 import pytest
 
-from fes_mj.budget.shares import shares
+from fes_mj.budget.budget import shares
 from fes_mj.common.arrays import FloatArray, IntArray
 from fes_mj.common.errors import MissingPartError
 
