@@ -127,8 +127,8 @@ def _check_files(report: Path | None, junit: Path | None, video: Path | None, in
 def _run_checks(cases: list[VerificationCase], quick: bool, options: RunOptions) -> list[Check]:
     from fes_mj.verification.suite import FULL, QUICK, benchmarks, two_leg_checks, verify
 
-    stages = FULL if not quick else (*QUICK, two_leg_checks) if options.legs == 2 else QUICK
-    runs = [verify(case, (stage,)) for case in cases for stage in stages] + [benchmarks()]
+    groups = FULL if not quick else (*QUICK, two_leg_checks) if options.legs == 2 else QUICK
+    runs = [verify(case, (group,)) for case in cases for group in groups] + [benchmarks()]
     return [check for run in track(runs, "checking", options.silent) for check in run]
 
 

@@ -263,7 +263,7 @@ def _close_loop(spec: Spec, design: Design, leg: Leg, cut: str, anchors: str) ->
     # the loop gap, m
     kind, site = mujoco.mjtSensor.mjSENS_FRAMEPOS, mujoco.mjtObj.mjOBJ_SITE
     gap = spec.add_sensor(name=f"{leg.prefix}{cut}_gap", type=kind, objtype=site, reftype=site)
-    gap.objname, gap.refname = (each.name for each in sites)
+    gap.objname, gap.refname = (anchor.name for anchor in sites)
 
 
 def add_motors(spec: Spec, legs: tuple[Leg, ...]) -> None:

@@ -11,7 +11,7 @@ from fes_mj.linkage.design import BODIES, BRANCHES, Design
 from fes_mj.linkage.segments import GRAVITY, inertias
 
 # Crank angles at which the error is evaluated: a dyad 0.1 mm from its dead centre passes it within 2 deg.
-ANGLES = np.linspace(0.0, 2 * np.pi, 7200, endpoint=False)
+FINE_TURN = np.linspace(0.0, 2 * np.pi, 7200, endpoint=False)
 
 
 class Errors(NamedTuple):
@@ -22,7 +22,7 @@ class Errors(NamedTuple):
     loop_gap: float
 
 
-def predicted_errors(design: Design, cadence: float, step: float, angles: FloatArray = ANGLES) -> Errors:
+def predicted_errors(design: Design, cadence: float, step: float, angles: FloatArray = FINE_TURN) -> Errors:
     """Errors of the simulation of one leg with `step` (rad of the crank) between two samples, without joint moments.
 
     cadence: rad/s. angles: of the crank, uniform over a turn, at which they are evaluated, rad.

@@ -14,7 +14,7 @@ from fes_mj.linkage.inertia import crank_inertia
 from fes_mj.linkage.legs import LEGS
 from fes_mj.linkage.segments import GRAVITY
 from fes_mj.linkage.turning import turning
-from fes_mj.simulation.step_error import ANGLES, Errors, predicted_errors
+from fes_mj.simulation.step_error import FINE_TURN, Errors, predicted_errors
 
 # A predicted error may take up this share of its limit. The other half is for the joint moments, which the prediction
 # leaves out, and for what is of higher order than the second.
@@ -24,7 +24,7 @@ SHARE = 0.5
 FEWEST_STEPS = 2880
 # Most designs are content with the fewest steps by far: if a degree between the angles shows no error above this share
 # of what is allowed, 0.05 deg do not show one above all of it.
-GLANCE, WELL_WITHIN = ANGLES[::20], 0.25
+GLANCE, WELL_WITHIN = FINE_TURN[::20], 0.25
 LONGEST_TIMESTEP = 0.02  # s, of those that a user asks for
 # All turns together. With the near-massless run beside it that is a gigabyte and half a minute.
 MOST_STEPS = 1_000_000

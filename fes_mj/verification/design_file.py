@@ -12,7 +12,7 @@ from fes_mj.common.checks import Check
 from fes_mj.linkage.kinematics import Motion
 from fes_mj.verification.case import VerificationCase
 
-ANGLES = np.linspace(0, 2 * np.pi, 72, endpoint=False)
+POSES = np.linspace(0, 2 * np.pi, 72, endpoint=False)
 DEGREES = ("gamma", "seat_angle")  # keys of a design file that are angles
 WHEEL, SPEED = 0.66, 5.71 / 3.6  # m, m/s: of Eq. 16, not the reader's
 
@@ -21,7 +21,7 @@ def file_checks(case: VerificationCase) -> list[Check]:
     """Every dimension that the case's design file gives; nothing for a design that is in no file."""
     if case.file is None:
         return []
-    return [case.check("design_file", file_error(case.file, case.steps.motion(ANGLES)))]
+    return [case.check("design_file", file_error(case.file, case.steps.motion(POSES)))]
 
 
 def file_error(path: Path, motion: Motion) -> float:

@@ -13,7 +13,7 @@ from fes_mj.common.checks import Check, definitions
 from fes_mj.common.errors import InputError
 from fes_mj.linkage.design import Design
 from fes_mj.verification.case import VerificationCase
-from fes_mj.verification.suite import FULL, QUICK, Stage, refinement_checks, ride_checks, verify
+from fes_mj.verification.suite import FULL, QUICK, CheckGroup, refinement_checks, ride_checks, verify
 
 
 class Fault(NamedTuple):
@@ -37,7 +37,7 @@ class Fault(NamedTuple):
         return case.design.linkage.kind in self.kinds and edited
 
     @property
-    def stages(self) -> tuple[Stage, ...]:
+    def groups(self) -> tuple[CheckGroup, ...]:
         """Of the suite, those that can notice: the rides, or the quick ones and what only refinement can see."""
         if self.ride_steps:
             return (ride_checks,)
@@ -67,7 +67,7 @@ class Detection(NamedTuple):
 
     @property
     def guarded(self) -> bool:
-        """Whether the checks that are there for it noticed, as far as the case has them."""
+        """Whether a check that is there for it noticed."""
         return bool({*self.fault.guards} & {check.name for check in self.failed})
 
     @property
@@ -94,7 +94,7 @@ def inject(fault: Fault, case: VerificationCase, baseline: Mapping[str, bool]) -
     failed: list[Check] = []
     with suppress(InputError):  # of a design that is refused; the checks of its geometry have noticed before
         failed += (
-            check for check in verify(fault.put_into(case), fault.stages) if not check.ok and baseline.get(check.name)
+            check for check in verify(fault.put_into(case), fault.groups) if not check.ok and baseline.get(check.name)
         )
     return Detection(fault, tuple(failed))
 

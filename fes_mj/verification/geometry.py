@@ -13,12 +13,12 @@ from fes_mj.linkage.joints import JOINTS
 from fes_mj.linkage.kinematics import Motion, cross
 
 # The catalogue is resolved to rounding by 512 points; linkages closer to a dead centre turn faster there.
-POINTS = 2048
+SAMPLES = 2048
 
 
 def geometry_checks(case: Case) -> list[Check]:
     """Closure, branch and rates of one case."""
-    motion = case.steps.motion(np.linspace(0, 2 * np.pi, POINTS, endpoint=False))
+    motion = case.steps.motion(np.linspace(0, 2 * np.pi, SAMPLES, endpoint=False))
     first, second = rate_errors(motion)
     return [
         case.check("loop_closure", closure_error(motion)),
@@ -54,7 +54,7 @@ def wrong_branch(motion: Motion) -> float:
 def rate_errors(motion: Motion) -> tuple[float, float]:
     """Kinematic coefficients against Fourier derivatives of the positions and angles, relative to the largest.
 
-    First and second coefficients; motion over POINTS uniform crank angles from 0.
+    First and second coefficients; motion over SAMPLES uniform crank angles from 0.
     """
     pairs: list[tuple[Any, Any, Any]] = [
         (jet.value, jet.first, jet.second) for jet in motion.points.values() if np.size(jet.value) > 1

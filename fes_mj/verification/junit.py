@@ -10,18 +10,20 @@ from fes_mj.verification.faults import Detection
 def junit_xml(checks: Sequence[Check], detections: Sequence[Detection] = ()) -> str:
     """One test suite a subject, one test case a check; injected faults that nobody caught are failures too."""
     root = ElementTree.Element("testsuites", name="fes_mj validate")
-    for subject in dict.fromkeys(each.subject for each in checks):
-        cases = [each for each in checks if each.subject == subject]
-        suite = _suite(root, subject, len(cases), sum(not each.ok for each in cases))
-        for each in cases:
-            case = ElementTree.SubElement(suite, "testcase", classname=subject, name=each.name)
-            text = f"{each.value:g} {each.unit} (limit {each.limit:g} {each.unit})"
-            if not each.ok:
+    for subject in dict.fromkeys(check.subject for check in checks):
+        own = [check for check in checks if check.subject == subject]
+        suite = _suite(root, subject, len(own), sum(not check.ok for check in own))
+        for check in own:
+            case = ElementTree.SubElement(suite, "testcase", classname=subject, name=check.name)
+            text = f"{check.value:g} {check.unit} (limit {check.limit:g} {check.unit})"
+            if not check.ok:
                 failure = ElementTree.SubElement(case, "failure", message=text)
-                failure.text = f"{definitions()[each.name].guards} Usually broken by: {definitions()[each.name].breaks}"
+                failure.text = (
+                    f"{definitions()[check.name].guards} Usually broken by: {definitions()[check.name].breaks}"
+                )
             ElementTree.SubElement(case, "system-out").text = text
     if detections:
-        suite = _suite(root, "injected faults", len(detections), sum(not each.caught for each in detections))
+        suite = _suite(root, "injected faults", len(detections), sum(not detection.caught for detection in detections))
         for detection in detections:
             case = ElementTree.SubElement(suite, "testcase", classname="injected faults", name=detection.fault.name)
             if not detection.first:

@@ -143,7 +143,7 @@ def times(*factors: float) -> Callable[[FloatArray], FloatArray]:
 
 def in_keyframe(field: str, joint: str, change: Callable[[float], float]) -> Steps:
     def edit(_: Pipeline, spec: Any) -> None:
-        place = [each.name for each in spec.joints].index(joint)  # hinges only: one coordinate each
+        place = [hinge.name for hinge in spec.joints].index(joint)  # hinges only: one coordinate each
         values = getattr(spec.keys[0], field)
         values[place] = change(values[place])
 

@@ -33,7 +33,7 @@ def refinement_curve(name: str, refinement: Refinement) -> str:
     }.items():
         axes.plot(timestep, [abs(getattr(level, field)) for level in steps], "o-", label=label)
     axes.set_xscale("log", base=2)
-    axes.set_xticks(timestep, [f"{each:.3f}" for each in timestep])
+    axes.set_xticks(timestep, [f"{step:.3f}" for step in timestep])
     axes.set_yscale("log")
     return page_svg(figure, axes)
 

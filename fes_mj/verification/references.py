@@ -18,7 +18,7 @@ from fes_mj.simulation.mjcf import REAL, Physics, joint_motion
 from fes_mj.statics.equilibrium import virtual_work
 
 Curves: TypeAlias = dict[str, FloatArray]  # method -> crank moment, N m, shape (angles,)
-ANGLES = np.linspace(0, 2 * np.pi, 360, endpoint=False)
+EVERY_DEGREE = np.linspace(0, 2 * np.pi, 360, endpoint=False)
 NEARLY_MASSLESS = Physics(mass_scale=1e-3, gravity=0.0)
 
 
@@ -27,7 +27,7 @@ def exact_curves(case: Case, crank_angle: FloatArray | None = None) -> dict[str,
 
     crank_angle: rad, shape (angles,), by default every degree.
     """
-    motion = case.steps.motion(ANGLES if crank_angle is None else crank_angle)
+    motion = case.steps.motion(EVERY_DEGREE if crank_angle is None else crank_angle)
     joint_moment, loads = case.steps.joint_moment(motion), case.steps.loads(motion)
     return {
         "massless": {
@@ -74,7 +74,7 @@ def differences(curves: Curves) -> dict[tuple[str, str], float]:
 
 def massless_difference(case: Case) -> float:
     """Largest difference over the turn between the two inverse dynamics of a leg almost without masses, N m."""
-    motion = case.steps.motion(ANGLES)
+    motion = case.steps.motion(EVERY_DEGREE)
     mujoco = mujoco_inverse(case, motion, case.steps.joint_moment(motion), NEARLY_MASSLESS)
     own = case.steps.crank_moment(motion, NEARLY_MASSLESS.mass_scale, NEARLY_MASSLESS.gravity)
     return float(np.abs(mujoco - own).max())

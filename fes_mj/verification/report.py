@@ -28,22 +28,22 @@ def report_html(
 
     chains = compare_chains()
     worst: dict[str, Check] = {}
-    for each in checks:
-        if each.name not in worst or each.factor > worst[each.name].factor:
-            worst[each.name] = each
+    for check in checks:
+        if check.name not in worst or check.factor > worst[check.name].factor:
+            worst[check.name] = check
     return page(
         Path(__file__).with_name("report.html.j2"),
         filters={"short": short, "fixed": fixed, "sentence": sentence},
-        ok=all(each.ok for each in checks) and all(each.caught for each in detections),
+        ok=all(check.ok for check in checks) and all(detection.caught for detection in detections),
         checks=checks,
-        failed=[each for each in checks if not each.ok],
-        worst=[(definitions()[name], each) for name, each in worst.items()],
+        failed=[check for check in checks if not check.ok],
+        worst=[(definitions()[name], check) for name, check in worst.items()],
         detections=detections,
-        missed=[each for each in detections if not each.caught],
+        missed=[detection for detection in detections if not detection.caught],
         cases=cases,
         differences=differences,
-        power_curves=[plots.power_curve(each) for each in cases],
-        refinement_curves=[plots.refinement_curve(each.name, each.refinement) for each in cases if each.refined],
+        power_curves=[plots.power_curve(case) for case in cases],
+        refinement_curves=[plots.refinement_curve(case.name, case.refinement) for case in cases if case.refined],
         chains=chains,
         chain_curve=plots.chain_curve(chains),
         video=base64.b64encode(video.read_bytes()).decode() if video else None,

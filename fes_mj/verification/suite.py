@@ -84,8 +84,8 @@ def ride_checks(case: VerificationCase) -> list[Check]:
     return [check for ride in case.rides for check in ride.checks]
 
 
-Stage: TypeAlias = Callable[[VerificationCase], list[Check]]
-QUICK: tuple[Stage, ...] = (
+CheckGroup: TypeAlias = Callable[[VerificationCase], list[Check]]
+QUICK: tuple[CheckGroup, ...] = (
     *(geometry_checks, file_checks, map_checks, exact_checks, model_checks, turn_checks),
     printed_checks,
 )
@@ -93,11 +93,11 @@ FULL = (*QUICK, two_leg_checks, refinement_checks, ride_checks)
 BENCHMARKS = {"A02": chain_checks, "four-bar": four_bar_checks}
 
 
-def verify(case: VerificationCase, stages: tuple[Stage, ...] = QUICK) -> Iterator[Check]:
-    """Run the checks of a case, stage by stage. Raises AssemblyError if its linkage does not close."""
-    for stage in stages:
+def verify(case: VerificationCase, groups: tuple[CheckGroup, ...] = QUICK) -> Iterator[Check]:
+    """Run the checks of a case, group by group. Raises AssemblyError if its linkage does not close."""
+    for group in groups:
         try:
-            yield from stage(case)
+            yield from group(case)
         except UnstableError:
             yield case.check("stability", math.inf)
 

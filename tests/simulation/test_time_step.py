@@ -44,7 +44,7 @@ def test_what_does_not_fit_into_memory_is_refused_with_a_way_out() -> None:
 
 def test_what_moves_too_sharply_is_refused_before_it_runs() -> None:
     edge = random_design(np.random.default_rng(776))  # both dyads 0.2 mm from their dead centres
-    assert max(each.margin[0] for each in clearances(edge)) < 2.1e-4
+    assert max(clearance.margin[0] for clearance in clearances(edge)) < 2.1e-4
     with pytest.raises(fes_mj.InputError, match=r"random: .*200 rpm .*--cadence"):
         steps_per_turn(edge, 200 * RPM)
     assert steps_per_turn(edge, 20 * RPM) < MOST_STEPS

@@ -66,7 +66,7 @@ def test_what_drives_and_what_integrates(
 def test_only_bodies_anchors_at_bodies() -> None:
     kinds = {name: model(name).eq_objtype for name in VARIANTS if name != "fixed-gear"}
     body = mujoco.mjtObj.mjOBJ_BODY
-    assert {name for name, found in kinds.items() if (found == body).any()} == {"bodies"}
+    assert {name for name, objects in kinds.items() if (objects == body).any()} == {"bodies"}
     assert (kinds["bodies"] == body).all()
 
 
@@ -171,9 +171,9 @@ ALL = [(name, variants) for name in DESIGNS for variants in (*LOOSE, ("passive",
     ],
 )
 def test_a_free_motion_keeps_energy_and_loops(name: str, variants: tuple[str, ...]) -> None:
-    found = move_freely(lossless(name, variants))
-    assert found.drift <= ENERGY_LIMIT, found
-    assert found.gap <= GAP_LIMIT, found
+    motion = move_freely(lossless(name, variants))
+    assert motion.drift <= ENERGY_LIMIT, motion
+    assert motion.gap <= GAP_LIMIT, motion
 
 
 def test_the_measurement_would_notice_another_integrator() -> None:

@@ -9,13 +9,13 @@ import fes_mj
 from fes_mj.linkage import kinematics
 from fes_mj.linkage.design_file import DESIGNS, DIMENSIONS, design_path, design_toml
 from fes_mj.linkage.variables import VARIABLES
-from fes_mj.verification.design_file import ANGLES, file_error, measure
+from fes_mj.verification.design_file import POSES, file_error, measure
 
 ROOT = Path(__file__).parents[2]
 
 
 def error(path: Path, design: fes_mj.Design) -> float:
-    return file_error(path, kinematics.solve(design, ANGLES))
+    return file_error(path, kinematics.solve(design, POSES))
 
 
 @pytest.mark.parametrize("dims", DIMENSIONS)
@@ -36,7 +36,7 @@ def test_a_right_branch_and_a_negative_foot_too(tmp_path: Path) -> None:
 def test_a_slip_in_any_dimension_is_seen(name: str) -> None:
     design = fes_mj.load_design(name)
     path, seen = design_path(name), set()
-    for symbol in measure(kinematics.solve(design, ANGLES)):
+    for symbol in measure(kinematics.solve(design, POSES)):
         variable = VARIABLES[symbol]
         if name not in variable.kinds and design.linkage.kind not in variable.kinds:
             continue  # a CRT has no gamma

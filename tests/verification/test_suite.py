@@ -6,5 +6,5 @@ from fes_mj.verification.suite import FULL, benchmarks, verify
 
 
 def test_the_suite_measures_every_registered_check(case: VerificationCase) -> None:
-    names = {each.name for each in verify(case, FULL)} | {each.name for each in benchmarks()}
+    names = {check.name for check in (*verify(case, FULL), *benchmarks())}
     assert names == set(definitions())
