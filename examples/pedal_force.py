@@ -3,8 +3,8 @@
 import numpy as np
 
 import fes_mj
+from fes_mj.linkage.inertia import body_loads
 from fes_mj.linkage.kinematics import solve
-from fes_mj.linkage.loads import body_loads
 from fes_mj.simulation.stepping import FORCE_EVERY
 from fes_mj.statics.equilibrium import equilibrium
 

@@ -13,8 +13,8 @@ from fes_mj.crosscheck.turn_case import Case
 from fes_mj.linkage import kinematics
 from fes_mj.linkage.design import Design, Linkage
 from fes_mj.linkage.design_file import design_toml
+from fes_mj.linkage.inertia import body_loads
 from fes_mj.linkage.joints import JOINTS
-from fes_mj.linkage.loads import body_loads
 from fes_mj.moments.joint_moments import COLUMNS, JointMoments
 from fes_mj.moments.torque_map import torque_map
 from fes_mj.statics.equilibrium import crank_moment, equilibrium, virtual_work

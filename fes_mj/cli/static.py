@@ -9,8 +9,7 @@ from fes_mj.cli.options import DesignName, Flag, Loaded, RunOptions
 from fes_mj.common.console import print_table, say
 from fes_mj.linkage.turning import CRANK_ZERO, FROM_TOP, turning
 from fes_mj.statics.joint_forces import JointForces
-from fes_mj.statics.legs import LegTurns
-from fes_mj.statics.turn import QuasiStatic, quasi_static
+from fes_mj.statics.turn import LegTurns, QuasiStatic, quasi_static
 
 _DEFAULTS = RunOptions()
 

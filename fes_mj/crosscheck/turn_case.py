@@ -13,8 +13,7 @@ from fes_mj.crosscheck.pipeline import Pipeline, Setup
 from fes_mj.simulation.bench import BenchOptions, Simulation
 from fes_mj.simulation.mjcf import Physics
 from fes_mj.statics.joint_forces import JointForces
-from fes_mj.statics.legs import LegTurns
-from fes_mj.statics.turn import TURN_POINTS, QuasiStatic
+from fes_mj.statics.turn import TURN_POINTS, LegTurns, QuasiStatic
 
 # The near-massless variant keeps so much of all masses that inertia adds this power to the quasi-static curve. With
 # less, the loops, whose stiffness MuJoCo scales with the masses, give way to the jumps of the torque map.

@@ -29,7 +29,8 @@ def load_design(source: str | Path, dims: str = "identified") -> Design:
     >>> design.linkage.kind, design.linkage.crank
     ('cdt', 0.160788)
     """
-    return _read(design_path(source, dims))
+    path = design_path(source, dims)
+    return read_design(read_toml(path, "design file"), printable(path.stem))
 
 
 def design_path(source: str | Path, dims: str = "identified") -> Path:
@@ -54,10 +55,6 @@ def identified_draws(name: str) -> dict[str, FloatArray]:
         return {}
     with np.load(path) as stored:
         return {component: np.asarray(stored[component]) for component in stored}
-
-
-def _read(path: Path) -> Design:
-    return read_design(read_toml(path, "design file"), printable(path.stem))
 
 
 def read_design(content: Section, name: str) -> Design:

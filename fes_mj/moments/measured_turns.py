@@ -8,9 +8,9 @@ import numpy as np
 from fes_mj.common.arrays import FloatArray
 from fes_mj.common.errors import InputError
 from fes_mj.common.reading import TextTable
+from fes_mj.linkage.inertia import leg_moments
 from fes_mj.linkage.joints import JOINTS
 from fes_mj.linkage.kinematics import solve
-from fes_mj.linkage.loads import leg_moments
 from fes_mj.moments.joint_moments import Misreading
 from fes_mj.moments.measurement_file import Description
 from fes_mj.moments.misreading import odd_angles

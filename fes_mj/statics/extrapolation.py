@@ -149,15 +149,10 @@ def _joints_without_data(turn: Turning, reference: ReferenceTricycle) -> list[st
     never = []
     for joint, angle in angles.items():
         if outside[joint]:
-            own, known = (
-                f"{low:.1f} to {high:.1f} deg" for low, high in (_ends(angle), np.degrees(reference.ranges[joint]))
-            )
+            ends = (angle.min(), angle.max()), reference.ranges[joint]
+            own, known = (f"{low:.1f} to {high:.1f} deg" for low, high in np.degrees(ends))
             never.append(f"the {joint} moves from {own}, the moments are known from {known}")
     return never
-
-
-def _ends(angle: FloatArray) -> tuple[float, float]:
-    return float(np.degrees(angle.min())), float(np.degrees(angle.max()))
 
 
 def _likely_cause(design: Design, reference: ReferenceTricycle) -> str:

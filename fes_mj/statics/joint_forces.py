@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from fes_mj.common.arrays import ComplexArray
-from fes_mj.linkage.loads import body_loads
+from fes_mj.linkage.inertia import body_loads
 from fes_mj.linkage.riders import leg_mass_after_injury
 from fes_mj.linkage.segments import GRAVITY
 from fes_mj.statics.equilibrium import equilibrium

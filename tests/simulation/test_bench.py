@@ -28,8 +28,8 @@ def test_constraint_forces_are_the_reactions_of_the_massive_equilibrium(
 
     Without the steps at which a joint turns round: there the map jumps, and which side a step falls on is rounding.
     """
+    from fes_mj.linkage.inertia import body_loads
     from fes_mj.linkage.kinematics import solve
-    from fes_mj.linkage.loads import body_loads
     from fes_mj.statics.equilibrium import equilibrium
 
     run = fes_mj.simulate(design, smooth_moments)

@@ -63,7 +63,7 @@ def test_the_mean_does_not_depend_on_the_number_of_points(design: Design, moment
 
 
 def test_loads_enter_equilibrium_as_they_enter_virtual_work(design: Design, smooth_moments: JointMoments) -> None:
-    from fes_mj.linkage.loads import body_loads
+    from fes_mj.linkage.inertia import body_loads
 
     result = quasi_static(design, smooth_moments, points=360)
     loads = body_loads(result.motion, result.cadence)
