@@ -45,8 +45,8 @@ def make_folder(folder: Path, what: str) -> None:
     require_makeable(folder, what)
     try:
         folder.mkdir(exist_ok=True)
-    except OSError as error:
-        raise InputError(f"{folder}: cannot be made: {error.strerror}") from None
+    except (OSError, ValueError) as error:  # ValueError: a name that no file can have
+        raise InputError(f"{folder}: cannot be made: {getattr(error, 'strerror', error)}") from None
 
 
 def require_writable(
@@ -69,9 +69,9 @@ def require_writable(
         raise InputError(f"{path}: cannot write {what}: no file can have this name") from None
     if path.is_dir():
         raise InputError(f"{path}: cannot write {what}: this is a folder; name a file in it")
-    if not path.name.lower().endswith(suffixes):
-        allowed = suffixes if isinstance(suffixes, str) else " or ".join(suffixes)
-        raise InputError(f"{path}: cannot write {what}: the name must end in {allowed}")
+    allowed = (suffixes,) if isinstance(suffixes, str) else suffixes
+    if suffixes and path.suffix.lower() not in allowed:
+        raise InputError(f"{path}: cannot write {what}: the name must end in {' or '.join(allowed)}")
     for file in inputs:
         if path.exists() and file.exists() and path.samefile(file):
             raise InputError(
@@ -107,9 +107,16 @@ def require_results(folder: Path, stem: str, suffixes: Iterable[str], inputs: Co
 
 
 def write_results(contents: Mapping[Path, str | bytes]) -> None:
-    """Write the set into its folder."""
-    make_folder(next(iter(contents)).parent, "the results")
-    write_files(contents, unnamed=contents.keys())
+    """Write the set into its folder; one that was made for it does not stay without it."""
+    folder = next(iter(contents)).parent
+    there = folder.exists()
+    make_folder(folder, "the results")
+    try:
+        write_files(contents, unnamed=contents.keys())
+    except BaseException:
+        if not there:
+            folder.rmdir()
+        raise
 
 
 def _digest(content: bytes) -> str:

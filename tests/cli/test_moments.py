@@ -14,22 +14,22 @@ TRIAL = Path(__file__).parents[2] / "examples" / "trial" / "trial.toml"
 
 
 def test_json_and_table_say_the_same(capsys: pytest.CaptureFixture[str]) -> None:
-    code, found = answer(capsys, "moments", str(TRIAL))
+    code, content = answer(capsys, "moments", str(TRIAL))
     assert code == 0
-    assert found["turns"] == 4
-    assert found["cadence_rpm"] == pytest.approx(47)
-    assert found["warnings"] == []
-    assert found["knee_Nm"][0] < 0 < found["knee_Nm"][1]
-    assert found["work_per_turn_J"] == pytest.approx(found["power_mean_W"] * 60 / 47)
+    assert content["turns"] == 4
+    assert content["cadence_rpm"] == pytest.approx(47)
+    assert content["warnings"] == []
+    assert content["knee_Nm"][0] < 0 < content["knee_Nm"][1]
+    assert content["work_per_turn_J"] == pytest.approx(content["power_mean_W"] * 60 / 47)
     code, out, _ = result(capsys, "moments", str(TRIAL))
-    assert f"{found['power_mean_W']:.2f} +- {found['power_sd_W']:.2f}" in out
+    assert f"{content['power_mean_W']:.2f} +- {content['power_sd_W']:.2f}" in out
     assert "47.00 rpm" in out
 
 
 def test_groups_are_shown_too(capsys: pytest.CaptureFixture[str]) -> None:
-    _, found = answer(capsys, "moments", "p1p2")
+    _, content = answer(capsys, "moments", "p1p2")
     _, static = answer(capsys, "static", "trt")
-    assert found["power_sd_W"] == pytest.approx(static["power_sd_W"], rel=0.1)  # legs of another length
+    assert content["power_sd_W"] == pytest.approx(static["power_sd_W"], rel=0.1)  # legs of another length
 
 
 def test_what_is_written_gives_the_same_power(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:

@@ -24,27 +24,27 @@ def test_the_winner_is_what_the_other_commands_see(tmp_path: Path, capsys: pytes
     best, page = tmp_path / "best.toml", tmp_path / "best.html"
     command = ["optimize", "cdt", "--group", "p1p3", "--speeds-of", "d2", "--start", "d2", *QUICK, "-o", str(best)]
     assert run([*command, "--report", str(page), "--json"]) == 0
-    found = json.loads(capsys.readouterr().out)
-    assert found["feasible"]
-    assert found["violations"] == []
-    assert found["evaluations"] == 6000
-    assert found["design_file"] == str(best)
-    assert found["gain_W"] > 0
-    assert found["gain_deviation_W"] > 0
-    assert found["mean_knee_speed_deg_s"] <= 162.93
+    content = json.loads(capsys.readouterr().out)
+    assert content["feasible"]
+    assert content["violations"] == []
+    assert content["evaluations"] == 6000
+    assert content["design_file"] == str(best)
+    assert content["gain_W"] > 0
+    assert content["gain_deviation_W"] > 0
+    assert content["mean_knee_speed_deg_s"] <= 162.93
     assert run(["static", str(best), "--group", "p1p3", "--json"]) == 0
     static = json.loads(capsys.readouterr().out)
-    assert static["power_mean_W"] == pytest.approx(found["power_mean_W"], rel=1e-12)
-    assert static["cadence_rpm"] == pytest.approx(found["cadence_rpm"], rel=1e-12)
-    assert found["agrees"]
-    assert run(["simulate", str(best), "--group", "p1p3", "--timestep", str(found["timestep_s"]), "--json"]) == 0
+    assert static["power_mean_W"] == pytest.approx(content["power_mean_W"], rel=1e-12)
+    assert static["cadence_rpm"] == pytest.approx(content["cadence_rpm"], rel=1e-12)
+    assert content["agrees"]
+    assert run(["simulate", str(best), "--group", "p1p3", "--timestep", str(content["timestep_s"]), "--json"]) == 0
     simulated = json.loads(capsys.readouterr().out)
-    assert simulated["power_mean_W"] == pytest.approx(found["simulated_power_mean_W"], rel=1e-9)
+    assert simulated["power_mean_W"] == pytest.approx(content["simulated_power_mean_W"], rel=1e-9)
     swing = simulated["power_peak_to_peak_W"]
-    assert found["power_highest_W"] - found["power_lowest_W"] == pytest.approx(swing, rel=1e-9)
-    assert found["power_peak_to_peak_W"] == pytest.approx(swing, rel=1e-9)
+    assert content["power_highest_W"] - content["power_lowest_W"] == pytest.approx(swing, rel=1e-9)
+    assert content["power_peak_to_peak_W"] == pytest.approx(swing, rel=1e-9)
     text = page.read_text(encoding="utf-8")
-    assert f"{found['power_mean_W']:.3f}" in text
+    assert f"{content['power_mean_W']:.3f}" in text
     assert "<svg" in text
     import mujoco
 
@@ -54,13 +54,13 @@ def test_the_winner_is_what_the_other_commands_see(tmp_path: Path, capsys: pytes
 
 def test_the_default_speed_limit_is_that_of_the_trt(capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["optimize", "crt", *QUICK, "--json"]) == 0
-    found = json.loads(capsys.readouterr().out)
-    assert found["mean_knee_speed_deg_s"] <= 107.14
-    assert found["mean_knee_speed_deg_s"] > 95
+    content = json.loads(capsys.readouterr().out)
+    assert content["mean_knee_speed_deg_s"] <= 107.14
+    assert content["mean_knee_speed_deg_s"] > 95
     assert run(["optimize", "crt", *QUICK, "--knee-speed-limit", "80", "--json"]) == 0
     slower = json.loads(capsys.readouterr().out)
     assert slower["mean_knee_speed_deg_s"] <= 80.0
-    assert slower["power_mean_W"] < found["power_mean_W"]
+    assert slower["power_mean_W"] < content["power_mean_W"]
 
 
 @pytest.mark.long
@@ -68,14 +68,14 @@ def test_riders_of_a_population_are_listed_with_their_seats(capsys: pytest.Captu
     people = ["--riders", "population", "--samples", "50", "--sample-seed", "1"]
     search = ["optimize", "crt", "--budget", "12000", "--searches", "1", *people]
     assert run([*search, "--json"]) == 0
-    found = json.loads(capsys.readouterr().out)
-    assert found["feasible"]
-    own, *others = found["riders"]
-    assert own["power_mean_W"] == pytest.approx(found["power_mean_W"], rel=1e-4)
+    content = json.loads(capsys.readouterr().out)
+    assert content["feasible"]
+    own, *others = content["riders"]
+    assert own["power_mean_W"] == pytest.approx(content["power_mean_W"], rel=1e-4)
     assert (own["forward_m"], own["up_m"]) == (0.0, 0.0)
     assert len({rider["thigh"] for rider in others}) == len(others) > 1
-    assert min(r["power_mean_W"] for r in found["riders"]) < found["power_people_W"]
-    assert "--samples=50 --sample-seed=1" in found["command"]
+    assert min(r["power_mean_W"] for r in content["riders"]) < content["power_people_W"]
+    assert "--samples=50 --sample-seed=1" in content["command"]
     assert run(search) == 0
     assert "by these riders" in capsys.readouterr().out
 
@@ -86,17 +86,17 @@ def test_a_front_beside_the_design(tmp_path: Path, capsys: pytest.CaptureFixture
     assert (
         run(["optimize", "cdt", "--method", "nsga-ii", "--smooth", "--budget", "4000", "-o", str(out), "--json"]) == 0
     )
-    found = json.loads(capsys.readouterr().out)
+    content = json.loads(capsys.readouterr().out)
     lines = (tmp_path / "front-front.csv").read_text().splitlines()
-    assert len(lines) == len(found["front"]) + 1
+    assert len(lines) == len(content["front"]) + 1
     assert lines[0].endswith(",fluctuation")
     written = [float(line.split(",")[-1]) for line in lines[1:]]
-    assert written == pytest.approx([point["fluctuation"] for point in found["front"]], rel=1e-8)  # nine digits
+    assert written == pytest.approx([point["fluctuation"] for point in content["front"]], rel=1e-8)  # nine digits
     design = fes_mj.load_design(out)
     for group in ("p1p2", "p1p3"):
         power = fes_mj.quasi_static(design, fes_mj.load_moments(group)).power_mean
-        assert any(math.isclose(power, point["power_mean_W"][group], rel_tol=1e-4) for point in found["front"])
-    averages = [sum(point["power_mean_W"].values()) for point in found["front"]]
+        assert any(math.isclose(power, point["power_mean_W"][group], rel_tol=1e-4) for point in content["front"])
+    averages = [sum(point["power_mean_W"].values()) for point in content["front"]]
     own = sum(fes_mj.quasi_static(design, fes_mj.load_moments(group)).power_mean for group in ("p1p2", "p1p3"))
     assert own == pytest.approx(max(averages), rel=1e-4)
 
@@ -105,9 +105,9 @@ def test_own_moments_have_no_error_bar(tmp_path: Path, capsys: pytest.CaptureFix
     moments = tmp_path / "mine.csv"
     moments.write_text("crank_angle_deg,knee_Nm,hip_Nm\n0,5,1\n60,25,2\n180,5,-1\n270,-5,0\n")
     assert run(["optimize", "crt", "--moments", str(moments), *QUICK, "--json"]) == 0
-    found = json.loads(capsys.readouterr().out)
-    assert found["gain_W"] is None
-    assert found["group"] == "mine"
+    content = json.loads(capsys.readouterr().out)
+    assert content["gain_W"] is None
+    assert content["group"] == "mine"
 
 
 @pytest.mark.parametrize(

@@ -78,8 +78,8 @@ def test_own_moments_without_a_cadence(capsys: pytest.CaptureFixture[str], tmp_p
         ((str(plain), "--torque-velocity", "none"), 0),
         ((str(described), "--lag", "0.1"), 0),
     ):
-        found, _, err = result(capsys, "ride", "trt", "--duration", "1", "-q", "--moments", *arguments)
-        assert found == code, err
+        status, _, err = result(capsys, "ride", "trt", "--duration", "1", "-q", "--moments", *arguments)
+        assert status == code, err
         assert ("depends on the cadence they were measured at" in err) == (code == 2)
 
 

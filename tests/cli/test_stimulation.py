@@ -25,19 +25,19 @@ def test_table_json_and_files(capsys: pytest.CaptureFixture[str], tmp_path: Path
         assert said in out
     assert table.read_text().startswith("muscle,moment,leg,cadence_rpm,cadence_Hz,lag_s,lead_deg,")
     assert picture.read_text().startswith("<?xml")
-    code, found = answer(capsys, *arguments)
+    code, content = answer(capsys, *arguments)
     assert code == 0
-    first = found["windows"][0]
+    first = content["windows"][0]
     assert (first["muscle"], first["leg"], first["lead_deg"]) == ("quadriceps", "right", pytest.approx(36))
-    on, off = (f"{each:.0f}" for each in first["stimulate_deg"])
+    on, off = (f"{angle:.0f}" for angle in first["stimulate_deg"])
     assert f"{on} to {off}" in out
 
 
 def test_several_cadences_and_none(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
-    _, found = answer(capsys, "stimulation", "r1", "--cadence", "30", "--cadence", "60")
-    assert {round(each["cadence_rpm"]) for each in found["windows"]} == {30, 60}
-    _, found = answer(capsys, "stimulation", "r1")
-    assert {round(each["cadence_rpm"], 1) for each in found["windows"]} == {93.2}
+    _, content = answer(capsys, "stimulation", "r1", "--cadence", "30", "--cadence", "60")
+    assert {round(window["cadence_rpm"]) for window in content["windows"]} == {30, 60}
+    _, content = answer(capsys, "stimulation", "r1")
+    assert {round(window["cadence_rpm"], 1) for window in content["windows"]} == {93.2}
     _, out, _ = result(capsys, "stimulation", "r1")
     assert "--lag advances" in out
     assert (

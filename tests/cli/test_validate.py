@@ -16,9 +16,9 @@ def test_validate_quick_says_that_all_is_well(capsys: pytest.CaptureFixture[str]
     assert code == 0
     assert content["ok"] is True
     assert {"name", "value", "limit", "unit", "ok", "subject", "kind"} <= set(content["checks"][0])
-    assert {each["subject"] for each in content["checks"]} == {"trt p1p2", "d1 p1p2", "A02", "four-bar"}
-    assert all(each["ok"] for each in content["checks"])
-    assert [each["design"] for each in content["runs"]] == ["trt", "d1"]
+    assert {check["subject"] for check in content["checks"]} == {"trt p1p2", "d1 p1p2", "A02", "four-bar"}
+    assert all(check["ok"] for check in content["checks"])
+    assert [row["design"] for row in content["runs"]] == ["trt", "d1"]
     assert "faults" not in content
 
 
@@ -48,7 +48,7 @@ def test_a_run_that_breaks_down_is_a_verdict(
 
     monkeypatch.setitem(mjcf.INTEGRATORS, "discrete", mujoco.mjtIntegrator.mjINT_IMPLICITFAST)
     code, content = answer(capsys, "validate", "d1", "--quick")
-    failed = [each["name"] for each in content["checks"] if not each["ok"]]
+    failed = [check["name"] for check in content["checks"] if not check["ok"]]
     assert code == 1
     assert "stability" in failed
     assert content["runs"] == []
@@ -61,7 +61,7 @@ def test_an_own_design_is_validated_without_the_paper(capsys: pytest.CaptureFixt
     path = tmp_path / "own.toml"
     path.write_text(design_toml(load_design("r2")))
     code, content = answer(capsys, "validate", str(path), "--quick")
-    names = {each["name"] for each in content["checks"]}
+    names = {check["name"] for check in content["checks"]}
     assert code == 0
     assert "mean_power" in names
     assert not {"joint_range", "printed_power"} & names
@@ -104,10 +104,10 @@ def test_a_missing_package_names_the_extra(
 
 def test_the_json_reports_the_step_of_every_run(capsys: pytest.CaptureFixture[str]) -> None:
     _, content = answer(capsys, "validate", "trt", "r1", "--quick")
-    for each in content["runs"]:
-        design = load_design(each["design"])
+    for row in content["runs"]:
+        design = load_design(row["design"])
         steps = steps_per_turn(design, design.linkage.cadence)
-        assert each["timestep_s"] * steps == pytest.approx(60 / each["cadence_rpm"], rel=1e-12)
+        assert row["timestep_s"] * steps == pytest.approx(60 / row["cadence_rpm"], rel=1e-12)
 
 
 @pytest.mark.parametrize(("option", "name"), [("--report", "m.html"), ("--junit", "m.xml")])

@@ -183,6 +183,11 @@ def test_a_set_of_results_makes_its_folder(tmp_path: Path) -> None:
     assert require_results(folder, "a", ("json", "csv")) == paths
     with pytest.raises(InputError, match="does not exist"):
         require_results(tmp_path / "no" / "made", "a", ("json",))
+    with pytest.raises(InputError, match="cannot be made"):
+        write_results({tmp_path / "nul\0" / "a": ""})
+    with pytest.raises(InputError, match="cannot be written"):
+        write_results({tmp_path / "empty" / ("n" * 300): ""})
+    assert not (tmp_path / "empty").exists()
     with pytest.raises(InputError, match="is not a folder"):
         require_results(folder / "a.csv", "a", ("json",))
 
