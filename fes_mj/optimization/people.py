@@ -65,8 +65,8 @@ class People:
         seats = np.concatenate([np.zeros((len(moves), 1, 3)), np.clip(moved, low, high)], axis=1).reshape(-1, 3)
         legs = np.vstack([[design.rider.thigh, design.rider.shank], self.others])
         thigh, shank = np.tile(legs, (len(moves), 1)).T[..., None]
-        each = design.taken(np.repeat(np.arange(design.size), self.count))
-        return Seats(*seats.T[..., None]).moved(each.with_rider(thigh=thigh, shank=shank))
+        repeated = design.taken(np.repeat(np.arange(design.size), self.count))
+        return Seats(*seats.T[..., None]).moved(repeated.with_rider(thigh=thigh, shank=shank))
 
     def power(self, power: FloatArray) -> FloatArray:
         """The statistic, shape (n, sets), of the powers of all riders, design by design, shape (n * count, sets), W."""
@@ -85,7 +85,7 @@ def sampled(statistic: str, samples: int, seed: int) -> People:
     """
     random = np.random.default_rng(seed)
     drawn = [populations()[who].sample(samples, random) for who in PEOPLE.values()]
-    legs = np.hstack([(each.thigh, each.shank) for each in drawn]).T
+    legs = np.hstack([(people.thigh, people.shank) for people in drawn]).T
     riders, _ = kmeans2(legs, RIDERS, minit="++", rng=random)
     middle = legs.mean(axis=0)
     plane = _with_one(legs - middle) @ np.linalg.pinv(_with_one(riders - middle))

@@ -257,7 +257,7 @@ def make_problem(
     other, table = load_design(compared_with), uncertain_table(moments) if caution else WorkTable.of(moments)
     # a hair above, so that the design itself is within its own limits
     own, asked = joint_speeds(other, table).map(lambda speed: speed * (1 + 1e-9)), PerJoint(knee_speed, hip_speed)
-    speed = PerJoint(*(one if limit is None else limit for one, limit in zip(own, asked, strict=True)))
+    speed = PerJoint(*(speed if limit is None else limit for speed, limit in zip(own, asked, strict=True)))
     baseline = cycles(other, table).work[0] * turns_per_second(other.linkage.cadence)
     even = None if ripple is None else RippleLimit(ripple, moments)
     return Problem(template, table, load_limits(limits), speed, caution, baseline, people, even)

@@ -15,17 +15,17 @@ _RATIOS = np.linspace(0, 3, 301)
 _TICKS = (0.5, 1.0, *GAINS, 2.5)
 
 
-def budget_figure(found: Budgets) -> Figure:
+def budget_figure(budgets: Budgets) -> Figure:
     """Shares of the variance as stacked bars; below, the probability that the power per the TRT's is above a ratio."""
     figure = Figure(figsize=(7.2, 7.0), layout="constrained")
     axes: Any = figure.subplots(2, 2, sharey="row")
     for ax, group in zip(axes[0], GROUPS, strict=True):
-        _bars(ax, found, group)
+        _bars(ax, budgets, group)
         ax.set_title(f"{group.upper()}, everything drawn", loc="left", fontsize=9, weight="bold")
     axes[0, 0].set_ylabel("share of the variance, %")
     axes[0, 1].legend(loc="center left", bbox_to_anchor=(1.0, 0.5), reverse=True)
     for ax, group in zip(axes[1], GROUPS, strict=True):
-        _curves(ax, found, group)
+        _curves(ax, budgets, group)
         ax.set_title(f"{group.upper()}, power per TRT's", loc="left", fontsize=9, weight="bold")
         ax.set(xlabel="ratio", xlim=(0.2, 2.8), ylim=(0, 103), xticks=_TICKS)
         ax.set_xticklabels([f"{tick:g}" for tick in _TICKS], fontsize=7)
@@ -34,12 +34,12 @@ def budget_figure(found: Budgets) -> Figure:
     return figure
 
 
-def _bars(ax: Axes, found: Budgets, group: str) -> None:
+def _bars(ax: Axes, budgets: Budgets, group: str) -> None:
     """First order of each unknown; what is left is what they do together."""
-    designs = [name for name, other in found if other == group]
+    designs = [name for name, other in budgets if other == group]
     bottom = np.zeros(len(designs))
-    blame = [found[name, group].shares[FULL] for name in designs]
-    parts = {unknown: np.array([max(0.0, each[unknown].first) for each in blame]) for unknown in blame[0]}
+    blame = [budgets[name, group].shares[FULL] for name in designs]
+    parts = {unknown: np.array([max(0.0, shares[unknown].first) for shares in blame]) for unknown in blame[0]}
     parts["several together"] = np.maximum(0.0, 1 - sum(parts.values()))
     for (unknown, part), colour in zip(parts.items(), PARTS, strict=True):
         ax.bar([name.upper() for name in designs], 100 * part, bottom=bottom, color=colour, label=unknown, width=0.7)
@@ -47,11 +47,11 @@ def _bars(ax: Axes, found: Budgets, group: str) -> None:
     ax.grid(axis="x", visible=False)
 
 
-def _curves(ax: Axes, found: Budgets, group: str) -> None:
+def _curves(ax: Axes, budgets: Budgets, group: str) -> None:
     """Of every six-bar, with speed dependence and, dashed, as in the paper."""
     for name, colour in zip(SIX_BARS, PARTS, strict=False):
         for case, style, words in ((FULL, "-", "lag and speed dependence"), (FREE, "--", "as the paper")):
-            ratio = np.sort(np.nan_to_num(ratios(found, name, group, case), nan=-np.inf))  # beats nothing
+            ratio = np.sort(np.nan_to_num(ratios(budgets, name, group, case), nan=-np.inf))  # beats nothing
             above = 100 * (1 - np.searchsorted(ratio, _RATIOS, side="right") / ratio.size)
             ax.plot(_RATIOS, above, style, color=colour, label=f"{name.upper()}, {words}")
     for gain in GAINS:

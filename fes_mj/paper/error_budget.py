@@ -43,11 +43,11 @@ Budgets = dict[tuple[str, str], Drawn]
 
 def draw_all(static: dict[tuple[str, str], QuasiStatic], done: Callable[[], None]) -> Budgets:
     """By design and group, on the same draws of whatever designs share. Raises MissingPartError without SALib."""
-    found = {}
+    budgets = {}
     for key, result in static.items():
-        found[key] = _drawn(result)
+        budgets[key] = _drawn(result)
         done()
-    return found
+    return budgets
 
 
 def _drawn(result: QuasiStatic) -> Drawn:
@@ -64,25 +64,25 @@ def _drawn(result: QuasiStatic) -> Drawn:
 
 def prior_table() -> Table:
     """What is drawn, and where it comes from."""
-    return captioned("priors", [(name, each["prior"], each["source"]) for name, each in priors().items()])
+    return captioned("priors", [(name, row["prior"], row["source"]) for name, row in priors().items()])
 
 
-def contribution_table(found: Budgets) -> Table:
+def contribution_table(budgets: Budgets) -> Table:
     """Standard deviation by each unknown alone, and mean and standard deviation of all together in each case."""
     rows = []
-    for (name, group), each in found.items():
-        spreads = {case: Spread.of(powers) for case, powers in each.powers.items()}
+    for (name, group), drawn in budgets.items():
+        spreads = {case: Spread.of(powers) for case, powers in drawn.powers.items()}
         turning = 100 * (1 - spreads[FULL].failed / (DRAWS * TIMES))
         cells = [with_sd(spread.mean, spread.sd, 1) for spread in spreads.values()]
-        rows.append((name.upper(), group, *each.budget.by.values(), *cells, turning))
+        rows.append((name.upper(), group, *drawn.budget.by.values(), *cells, turning))
     return captioned("contributions", rows, unknown=[*priors()], case=[*CASES])
 
 
-def share_table(found: Budgets) -> Table:
+def share_table(budgets: Budgets) -> Table:
     """Sobol's shares of the variance, of first and total order."""
     rows: list[tuple[Any, ...]] = []
-    for (name, group), each in found.items():
-        for case, blame in each.shares.items():
+    for (name, group), drawn in budgets.items():
+        for case, blame in drawn.shares.items():
             cells = (_percent(blame[unknown]) if unknown in blame else None for unknown in _drawable())
             largest = max(share.total_error for share in blame.values())
             rows.append((name.upper(), group, case, *cells, 100 * largest))
@@ -97,31 +97,31 @@ def _drawable() -> list[str]:
     return [*priors()][:-1]
 
 
-def ratios(found: Budgets, name: str, group: str, case: str, base: str = "trt") -> FloatArray:
+def ratios(budgets: Budgets, name: str, group: str, case: str, base: str = "trt") -> FloatArray:
     """Power per another design's on the same draws; NaN where either does not turn."""
-    return np.asarray(found[name, group].powers[case] / found[base, group].powers[case])
+    return np.asarray(budgets[name, group].powers[case] / budgets[base, group].powers[case])
 
 
-def probability_table(found: Budgets) -> Table:
+def probability_table(budgets: Budgets) -> Table:
     """How probably each six-bar beats the TRT by so much; what does not turn beats nothing."""
     rows = []
     for name in SIX_BARS:
         for group in GROUPS:
             for case in CASES:
-                ratio = ratios(found, name, group, case)
+                ratio = ratios(budgets, name, group, case)
                 spread = Spread.of(ratio)
                 chances = (100 * float(np.mean(ratio > gain)) for gain in GAINS)
                 rows.append((name.upper(), group, case, with_sd(spread.mean, spread.sd), *chances))
     return captioned("probability", rows, gain=[f"{100 * (gain - 1):.0f}" for gain in GAINS])
 
 
-def better_table(found: Budgets) -> Table:
+def better_table(budgets: Budgets) -> Table:
     """How probably D1, the paper's choice, delivers more than each other six-bar."""
     rows = []
     for group in GROUPS:
         for case in CASES:
             chances = (
-                100 * float(np.mean(ratios(found, "d1", group, case, other) > 1)) for other in ("r1", "r2", "d2")
+                100 * float(np.mean(ratios(budgets, "d1", group, case, other) > 1)) for other in ("r1", "r2", "d2")
             )
             rows.append((group, case, *chances))
     return captioned("better", rows)

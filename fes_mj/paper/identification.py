@@ -55,7 +55,7 @@ def identify(
         error = np.nan_to_num(joint_ranges(design) - wanted, nan=180.0)
         return np.array([*(RANGE_TOLERANCE - error), *(RANGE_TOLERANCE + error), 100 * grashof_margin(design).item()])
 
-    random, best, found = np.random.default_rng(_SEED), None, False
+    random, best, fits = np.random.default_rng(_SEED), None, False
     for trial in range(_STARTS):
         start = random.normal(0, 0.3, 9) if trial else np.zeros(9)
         result = minimize(
@@ -68,11 +68,11 @@ def identify(
             options={"maxiter": 200},
         )
         feasible = bool(margins(result.x).min() > -1e-6)
-        if best is None or (feasible, -result.fun) > (found, -best.fun):
-            best, found = result, feasible
+        if best is None or (feasible, -result.fun) > (fits, -best.fun):
+            best, fits = result, feasible
     assert best is not None
     design = candidate(best.x)
-    return Identification(design, LENGTH_ROUNDING * best.x, joint_ranges(design), found)
+    return Identification(design, LENGTH_ROUNDING * best.x, joint_ranges(design), fits)
 
 
 def range_misfit(printed: Design, target: Expected, seat_angle: float, coupler_angle: float) -> float:
@@ -108,8 +108,8 @@ def inside_rounding(
     printed, target = load_design(name, "printed"), table1()[name]
     wanted_ranges = (*target.knee_range, *target.hip_range)
     middle, half = (
-        np.array(each)[:, None, None]
-        for each in ([component(printed, key) for key in half_widths], [*half_widths.values()])
+        np.array(values)[:, None, None]
+        for values in ([component(printed, key) for key in half_widths], [*half_widths.values()])
     )
 
     def moving_so(drawn: FloatArray, points: FloatArray) -> FloatArray:

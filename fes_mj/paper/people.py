@@ -12,13 +12,12 @@ from fes_mj.paper.runs import Runs
 
 def percentile_table() -> Table:
     """Thigh and shank of people beside the paper's."""
-    rows: list[tuple[Any, ...]] = [
-        (who, *(100 * length for each in (5, 50, 95) for length in _legs(people.rider(each))), people.correlation)
-        for who, people in populations().items()
-    ]
-    return captioned(
-        "people", [*rows, ("the paper's", None, None, *(100 * x for x in _legs(Rider())), None, None, None)]
-    )
+    rows: list[tuple[Any, ...]] = []
+    for who, people in populations().items():
+        legs = [100 * length for percentile in (5, 50, 95) for length in _legs(people.rider(percentile))]
+        rows.append((who, *legs, people.correlation))
+    rows.append(("the paper's", None, None, *(100 * length for length in _legs(Rider())), None, None, None))
+    return captioned("people", rows)
 
 
 def _legs(rider: Rider) -> tuple[float, float]:

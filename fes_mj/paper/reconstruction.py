@@ -82,7 +82,7 @@ class Posterior:
     def curve(self, joint: str, crank_angle: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Mean and standard deviation of a joint's moment, N m, at crank angles from top dead centre, rad."""
         features = fourier(crank_angle)
-        return self.predict_all(np.concatenate([features * (joint == each) for each in JOINTS], axis=1))
+        return self.predict_all(np.concatenate([features * (joint == name) for name in JOINTS], axis=1))
 
 
 class System(NamedTuple):

@@ -56,13 +56,13 @@ class Riding:
 
 def ride_all(done: Callable[[], None]) -> list[Riding]:
     """All rides; without numba it takes hours."""
-    found: list[Riding] = []
+    rides: list[Riding] = []
     for group in GROUPS:
         muscles = _muscles(group)
         for name in DESIGNS:
-            found += [_riding(load_design(name), group, muscles, each) for each in TRANSMISSIONS]
+            rides += [_riding(load_design(name), group, muscles, transmission) for transmission in TRANSMISSIONS]
             done()
-    return found
+    return rides
 
 
 def _muscles(group: str) -> list[JointMoments]:
@@ -73,21 +73,24 @@ def _muscles(group: str) -> list[JointMoments]:
 
 
 def _riding(design: Design, group: str, muscles: list[JointMoments], transmission: str) -> Riding:
-    level = [Ride(design, each, transmission=transmission) for each in muscles]
-    slope = balancing_slope(level[0])
-    uphill = [replace(ride, road=Road(slope=slope)) for ride in level]
+    level = [Ride(design, moments, transmission=transmission) for moments in muscles]
+    balanced = balancing_slope(level[0])
+    uphill = [replace(ride, road=Road(slope=balanced)) for ride in level]
     brief = [replace(ride, duration=SHORT) for ride in level[: 1 + START_DRAWS]]
-    geared = {each: [_geared(level[0], ratio, each) for ratio in RATIOS] for each in SLOPES}
+    geared = {slope: [_geared(level[0], ratio, slope) for ratio in RATIOS] for slope in SLOPES}
     with ThreadPoolExecutor(THREADS) as threads:
         return Riding(
             design,
             group,
             transmission,
-            slope,
+            balanced,
             [*threads.map(solved, level)],
             [*threads.map(solved, uphill)],
             [*threads.map(lambda ride: starts(ride, ANGLES), brief)],
-            {each: [trace.mean_speed or 0.0 for trace in threads.map(solved, some)] for each, some in geared.items()},
+            {
+                slope: [trace.mean_speed or 0.0 for trace in threads.map(solved, rides)]
+                for slope, rides in geared.items()
+            },
         )
 
 
@@ -96,63 +99,61 @@ def _geared(ride: Ride, ratio: float, slope: float) -> Ride:
     return replace(ride, design=replace(ride.design, linkage=linkage), road=Road(slope=slope))
 
 
-def speed_table(found: list[Riding]) -> Table:
+def speed_table(rides: list[Riding]) -> Table:
     """What each settles to on the flat, and whether it rides on the slope that its mean power balances."""
     rows = [
         (
-            *_names(each),
-            _with_scatter(lambda trace: trace.mean_speed and trace.mean_speed / KMH, each.flat),
-            _with_scatter(lambda trace: trace.cadence and trace.cadence / RPM, each.flat, 0),
-            _with_scatter(lambda trace: trace.ripple and 100 * trace.ripple, each.flat),
-            100 * each.flat[0].coasting_share,
-            100 * each.slope,
-            "rides" if each.uphill[0].rides else f"stops after {each.uphill[0].stopped_at:.0f} s",
-            f"{sum(trace.rides for trace in each.uphill[1:])} of {DRAWS}",
+            *_names(riding),
+            _with_scatter(lambda trace: trace.mean_speed and trace.mean_speed / KMH, riding.flat),
+            _with_scatter(lambda trace: trace.cadence and trace.cadence / RPM, riding.flat, 0),
+            _with_scatter(lambda trace: trace.ripple and 100 * trace.ripple, riding.flat),
+            100 * riding.flat[0].coasting_share,
+            100 * riding.slope,
+            "rides" if riding.uphill[0].rides else f"stops after {riding.uphill[0].stopped_at:.0f} s",
+            f"{sum(trace.rides for trace in riding.uphill[1:])} of {DRAWS}",
         )
-        for each in found
+        for riding in rides
     ]
     return captioned("riding", rows, draws=str(DRAWS))
 
 
-def start_table(found: list[Riding]) -> Table:
+def start_table(rides: list[Riding]) -> Table:
     """From which crank angles each starts, the launch it needs, the slope it climbs."""
     rows = [
         (
-            *_names(each),
-            _with_scatter(lambda one: 100 * one.share, each.starts, 0),
-            _with_scatter(lambda one: None if one.launch is None else one.launch / KMH, each.starts),
-            _with_scatter(lambda one: None if one.slope is None else 100 * one.slope, each.starts),
+            *_names(riding),
+            _with_scatter(lambda start: 100 * start.share, riding.starts, 0),
+            _with_scatter(lambda start: None if start.launch is None else start.launch / KMH, riding.starts),
+            _with_scatter(lambda start: None if start.slope is None else 100 * start.slope, riding.starts),
         )
-        for each in found
+        for riding in rides
     ]
     return captioned("starts", rows, angles=str(2 * ANGLES), draws=str(START_DRAWS))
 
 
-def gear_table(found: list[Riding]) -> Table:
+def gear_table(rides: list[Riding]) -> Table:
     """The gear ratio with which each is fastest on the flat and uphill."""
     rows = []
-    for each in found:
+    for riding in rides:
         cells: list[float | None] = []
-        for speeds in each.gears.values():
+        for speeds in riding.gears.values():
             best = int(np.argmax(speeds))
-            rides = speeds[best] > 0
-            cells += [float(RATIOS[best]) * each.design.linkage.gear_ratio if rides else None]
-            cells += [speeds[best] / KMH if rides else None]
-        rows.append((*_names(each), each.design.linkage.gear_ratio, *cells))
+            goes_on = speeds[best] > 0
+            cells += [float(RATIOS[best]) * riding.design.linkage.gear_ratio if goes_on else None]
+            cells += [speeds[best] / KMH if goes_on else None]
+        rows.append((*_names(riding), riding.design.linkage.gear_ratio, *cells))
     return captioned("gears", rows)
 
 
-def transmission_table(found: list[Riding]) -> Table:
+def transmission_table(rides: list[Riding]) -> Table:
     """Distance in a minute with a fixed gear per that with a freewheel, beside what was measured on the road."""
-    by = {_names(each): each for each in found}
+    by = {_names(riding): riding for riding in rides}
     rows = []
-    for each in (each for each in found if each.transmission == "fixed"):
-        other = by[each.design.name.upper(), each.group, "freewheel"]
-        gains = [
-            100 * (_distance(one) / _distance(two) - 1)
-            for one, two in ((each.flat[0], other.flat[0]), (each.uphill[0], other.uphill[0]))
-        ]
-        rows.append((*_names(each)[:2], *gains))
+    for (name, group, transmission), fixed in by.items():
+        if transmission == "fixed":
+            free = by[name, group, "freewheel"]
+            pairs = (fixed.flat[0], free.flat[0]), (fixed.uphill[0], free.uphill[0])
+            rows.append((name, group, *(100 * (_distance(one) / _distance(other) - 1) for one, other in pairs)))
     return captioned("transmissions", rows)
 
 
@@ -160,8 +161,8 @@ def _distance(trace: Trace) -> float:
     return float(trace.distance.max())
 
 
-def _names(each: Riding) -> tuple[str, str, str]:
-    return each.design.name.upper(), each.group, each.transmission
+def _names(riding: Riding) -> tuple[str, str, str]:
+    return riding.design.name.upper(), riding.group, riding.transmission
 
 
 def _with_scatter(of: Callable[[Any], float | None], rides: Sequence[Any], digits: int = 1) -> str | None:

@@ -32,16 +32,16 @@ def slopes(design: Design, moments: JointMoments) -> dict[str, tuple[FloatArray,
     linkage does not turn.
     """
     shifts = STEP * np.concatenate([np.zeros((9, 1)), np.eye(9), -np.eye(9)], axis=1)
-    found = cycles(
+    turn = cycles(
         with_lengths(design, (lengths(design)[:, None] + shifts)[..., None]), uncertain_table(moments), _POINTS
     )
-    power = found.work * turns_per_second(design.linkage.cadence)
-    slowed = power * (found.travel.knee[0] / found.travel.knee)[:, None]
-    each = {}
+    power = turn.work * turns_per_second(design.linkage.cadence)
+    slowed = power * (turn.travel.knee[0] / turn.travel.knee)[:, None]
+    by_held = {}
     for held, values in zip(HELD, (power, slowed), strict=True):
         slope = (values[1:10] - values[10:]) / (2 * STEP * _CM)
-        each[held] = (slope[:, 0], np.sqrt(np.einsum("ls,ls->l", slope[:, 1:], slope[:, 1:])))
-    return each
+        by_held[held] = (slope[:, 0], np.sqrt(np.einsum("ls,ls->l", slope[:, 1:], slope[:, 1:])))
+    return by_held
 
 
 def stationarity_table() -> Table:
@@ -49,7 +49,9 @@ def stationarity_table() -> Table:
     rows = []
     for (name, group), dims in product(MADE_FOR.items(), DIMENSIONS):
         for held, (slope, deviation) in slopes(load_design(name, dims), load_moments(group)).items():
-            cells = [None if np.isnan(one) else with_sd(one, sd, 1) for one, sd in zip(slope, deviation, strict=True)]
+            cells = [
+                None if np.isnan(value) else with_sd(value, sd, 1) for value, sd in zip(slope, deviation, strict=True)
+            ]
             farthest = None if np.isnan(slope).any() else float(np.max(np.abs(slope) / deviation))
             rows.append((name.upper(), group, dims, held, *cells, farthest))
     return captioned("stationarity", rows, length=LENGTHS)
