@@ -64,7 +64,7 @@ def measured(name: str) -> dict[str, Any]:
         "rms, W @.4f": rms,
         "of it by joint moments, W @.4f": float(np.sqrt(max(0.0, rms**2 - predicted**2))),
         "MuJoCo's loops: gap, mm @.1f": 1e3 * default.loop_gap_max,
-        "mean power, % @+.0f": 100 * (default.power_mean / case.static_power_mean - 1),
+        "mean power, % @+.0f": 100 * (default.power_mean / case.statics.power_mean - 1),
         "1e-5 s at 0.02 ms: gap, times @.1f": slower.loop_gap_max / stiff.loop_gap_max,
         "MuJoCo's softness: rms, W @.3f": case.rms_per_leg(soft),
         "servo of 1e6: rms, W @.4f": case.rms_per_leg(weak),

@@ -82,7 +82,7 @@ def simulate(
 
 def _content(case: Case) -> dict[str, Any]:
     """The result as JSON names and units it."""
-    from fes_mj.crosscheck.turn_output import turn_summary
+    from fes_mj.crosscheck.turn_case import turn_summary
 
     return turn_summary(case) | summary(error_budget(*case.statics.turns))
 
@@ -98,7 +98,7 @@ def _check_speed(speed: float, cadence: float) -> None:
 
 
 def _print(case: Case, verbose: bool) -> None:
-    from fes_mj.crosscheck.turn_output import turn_summary
+    from fes_mj.crosscheck.turn_case import turn_summary
 
     run = case.simulation
     dynamic = (
@@ -132,7 +132,7 @@ def _print(case: Case, verbose: bool) -> None:
 
 def _write(case: Case, paths: dict[str, Path]) -> None:
     """Write the result, the cycle and the model."""
-    from fes_mj.crosscheck.turn_output import cycle_csv
+    from fes_mj.crosscheck.turn_case import cycle_csv
     from fes_mj.simulation.export import mjcf_text
     from fes_mj.simulation.mjcf import build_mjcf
 

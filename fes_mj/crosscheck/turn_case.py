@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass, field
 from functools import cached_property
+from importlib.metadata import version
+from typing import Any
 
 import numpy as np
 
@@ -9,9 +11,12 @@ from fes_mj.common.arrays import FloatArray
 from fes_mj.common.brief import Brief
 from fes_mj.common.checks import LEAST_POWER, Check, check
 from fes_mj.common.units import RPM
+from fes_mj.common.writing import csv_text
 from fes_mj.crosscheck.pipeline import Pipeline, Setup
+from fes_mj.linkage.turning import FROM_TOP, turning
 from fes_mj.simulation.bench import BenchOptions, Simulation
 from fes_mj.simulation.mjcf import Physics
+from fes_mj.statics.characteristics import power_characteristics
 from fes_mj.statics.joint_forces import JointForces
 from fes_mj.statics.turn import TURN_POINTS, LegTurns, QuasiStatic
 
@@ -66,11 +71,6 @@ class Case(Brief, Setup):
         own = () if self.moments.left is None or self.legs == 1 else (self.steps.quasi_static(TURN_POINTS, "left_"),)
         return LegTurns((self.static, *own), self.legs)
 
-    @property
-    def static_power_mean(self) -> float:
-        """Quasi-static mean crank power of one leg, on average of the legs, W."""
-        return self.statics.power_mean
-
     @cached_property
     def simulation(self) -> Simulation:
         """The run with full masses. Raises UnstableError if it breaks down."""
@@ -101,20 +101,20 @@ class Case(Brief, Setup):
     @property
     def power_scale(self) -> float:
         """What the relative limits refer to: the mean power of one leg, but no less than LEAST_POWER, W."""
-        return max(abs(self.static_power_mean), LEAST_POWER)
+        return max(abs(self.statics.power_mean), LEAST_POWER)
 
     @property
     def relative_difference(self) -> float:
         """Mean power, dynamic minus static, relative to static; NaN for a static mean of zero."""
-        dynamic, static = self.simulation.power_mean, self.static_power_mean
+        dynamic, static = self.simulation.power_mean, self.statics.power_mean
         return (dynamic - static) / abs(static) if static else np.nan
 
     @property
     def difference_text(self) -> str:
         """The same for people: in percent, or in W where the static mean is too small for it to mean anything."""
-        if abs(self.static_power_mean) >= LEAST_POWER:
+        if abs(self.statics.power_mean) >= LEAST_POWER:
             return f"{100 * self.relative_difference:+.4f} %"
-        return f"{self.simulation.power_mean - self.static_power_mean:+.4f} W"
+        return f"{self.simulation.power_mean - self.statics.power_mean:+.4f} W"
 
     def rms_per_leg(self, run: Simulation, mass_scale: float | None = None) -> float:
         """Instantaneous crank power of a run against reference_power, root mean square per leg, W."""
@@ -131,7 +131,7 @@ class Case(Brief, Setup):
         run, power = self.simulation, self.power_scale
         duration = len(run.crank_angle) * run.timestep
         return (
-            self.check("mean_power", abs(run.power_mean - self.static_power_mean) / power),
+            self.check("mean_power", abs(run.power_mean - self.statics.power_mean) / power),
             self.check("loop_gap", run.loop_gap_max),
             self.check("cadence_ripple", run.cadence_ripple),
             self.check("inverse_dynamics", self.rms_per_leg(run)),
@@ -143,3 +143,46 @@ class Case(Brief, Setup):
     def agrees(self) -> bool:
         """Whether every check holds."""
         return all(check.ok for check in self.checks)
+
+
+def turn_summary(case: Case) -> dict[str, Any]:
+    """The result as JSON names and units it."""
+    run = case.simulation
+    static = case.static.summary() | case.joint_forces.summary()
+    return static | {
+        "power_mean_W": run.power_mean,
+        "work_per_turn_J": 2 * np.pi * run.power_mean / run.cadence,
+        "knee_range_deg": run.joint_range_deg.knee,
+        "hip_range_deg": run.joint_range_deg.hip,
+        **power_characteristics(run.power, run.turns),
+        "power_sd_W": case.statics.power_sd,
+        "static_power_mean_W": case.statics.power_mean,
+        "relative_difference": case.relative_difference,
+        "loop_gap_max_m": run.loop_gap_max,
+        "cadence_ripple": run.cadence_ripple,
+        "agrees": case.agrees,
+        "checks": [check.as_json() for check in case.checks],
+        "legs": len(run.legs),
+        "turns": run.turns,
+        "timestep_s": run.timestep,
+        "loop_force_max_N": {loop: float(np.abs(force).max()) for loop, force in run.loop_force.items()},
+        "energy_J": run.energy.as_json(),
+        "versions": {name: version(name) for name in ("fes-mj", "mujoco", "numpy")},
+    }
+
+
+def cycle_csv(case: Case) -> str:
+    """The measured turns as CSV, a row a time step."""
+    run = case.simulation
+    return csv_text(
+        {
+            "crank_angle_deg": np.degrees(run.crank_angle),
+            FROM_TOP: turning(case.design).degrees_from_top(run.crank_angle),
+            "crank_power_W": run.power,
+            "inverse_dynamics_power_W": case.reference_power(),
+            "quasi_static_power_W": case.reference_power(mass_scale=0.0),
+            **{f"{name}_deg": np.degrees(angle) for name, angle in run.joint_angle.items()},
+            **{f"{name}_Nm": moment for name, moment in run.joint_moment.items()},
+            **{f"{name}_gap_m": gap for name, gap in run.loop_gap.items()},
+        }
+    )

@@ -19,7 +19,7 @@ def simulated(design: Design, moments: JointMoments, legs: int) -> dict[str, Any
     """As `fes_mj simulate`: the verdict in a sentence, and every check. Raises what Case raises."""
     case = Case(design, moments, legs=legs)
     power = (
-        f"mean power {case.simulation.power_mean:.2f} W against {case.static_power_mean:.2f} W, {case.difference_text}"
+        f"mean power {case.simulation.power_mean:.2f} W against {case.statics.power_mean:.2f} W, {case.difference_text}"
     )
     return _outcome("Dynamic and static", power, case.checks)
 

@@ -7,8 +7,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from fes_mj.crosscheck.ride_case import RideCase
-from fes_mj.crosscheck.turn_case import Case
-from fes_mj.crosscheck.turn_output import turn_summary
+from fes_mj.crosscheck.turn_case import Case, turn_summary
 from fes_mj.riding.ride import TRANSMISSIONS, Ride, Road
 from fes_mj.verification.energy import Audit, audit
 from fes_mj.verification.references import Curves, differences, exact_curves

@@ -7,13 +7,15 @@ nothing else is touched, so nothing has to be put back.
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 from fes_mj.common.checks import Check, definitions
 from fes_mj.common.errors import InputError
 from fes_mj.linkage.design import Design
 from fes_mj.verification.case import VerificationCase
 from fes_mj.verification.suite import FULL, QUICK, CheckGroup, refinement_checks, ride_checks, verify
+
+Steps: TypeAlias = dict[str, Any]  # step of a pipeline or of a RideCase -> what takes its place
 
 
 class Fault(NamedTuple):
@@ -53,6 +55,21 @@ class Fault(NamedTuple):
             pipeline=type("FaultyPipeline", (case.pipeline,), dict(self.steps)),
             ride_case=type("FaultyRide", (case.ride_case,), dict(self.ride_steps)),
         )
+
+
+def in_model(kind: str, name: str = "", **changes: Any) -> Steps:
+    """Change attributes of elements of a kind ("bodies", ...) of the MuJoCo model: of all or of the one with this name.
+
+    changes: a new value, or a function of the old one. The kind "option" and "compiler" are elements themselves.
+    """
+
+    def edit(_: object, spec: Any) -> None:
+        elements = getattr(spec, kind)
+        for element in elements if hasattr(elements, "__len__") else [elements]:
+            for attribute, new in changes.items() if name in ("", getattr(element, "name", "")) else ():
+                setattr(element, attribute, new(getattr(element, attribute)) if callable(new) else new)
+
+    return {"edit_model": edit}
 
 
 class Detection(NamedTuple):

@@ -26,8 +26,7 @@ from fes_mj.simulation.bench import PLAIN, BenchOptions
 from fes_mj.simulation.mjcf import SERVO, SERVO_GAIN
 from fes_mj.simulation.time_step import steps_per_turn
 from fes_mj.statics.equilibrium import equilibrium, joint_couples, moment_arm
-from fes_mj.verification.faults import Fault
-from fes_mj.verification.model_edits import Steps, in_model
+from fes_mj.verification.faults import Fault, Steps, in_model
 from fes_mj.verification.ride_mistakes import RIDE_STEPS
 
 _FILE = DATA / "faults.toml"

@@ -17,7 +17,7 @@ from fes_mj.riding.trace import ride as ride_by_equation
 from fes_mj.simulation.road import RoadRun
 from fes_mj.simulation.road_control import RoadControl
 from fes_mj.simulation.road_mjcf import DRIVETRAIN, ROAD
-from fes_mj.verification.model_edits import Steps, in_model
+from fes_mj.verification.faults import Steps, in_model
 
 
 def in_equation(change: Callable[[Ride], Ride]) -> Steps:

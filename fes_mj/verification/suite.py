@@ -13,8 +13,7 @@ from fes_mj.common.units import turns_per_second
 from fes_mj.linkage.assembly import joint_ranges
 from fes_mj.simulation.mjcf import SERVO_GAIN
 from fes_mj.verification.case import VerificationCase
-from fes_mj.verification.design_file import file_checks
-from fes_mj.verification.geometry import geometry_checks
+from fes_mj.verification.geometry import file_checks, geometry_checks
 from fes_mj.verification.model import map_checks, model_checks
 from fes_mj.verification.problems import chain_checks, four_bar_checks
 from fes_mj.verification.references import exact_checks

@@ -106,7 +106,7 @@ def _write_turn(figure: Figure, case: Case) -> None:
     run = case.simulation
     facts = (
         ("mean power, MuJoCo", f"{run.power_mean:.3f} W a leg", COLOURS["mujoco"]),
-        ("mean power, quasi-static", f"{case.static_power_mean:.3f} W a leg", COLOURS["quasi-static"]),
+        ("mean power, quasi-static", f"{case.statics.power_mean:.3f} W a leg", COLOURS["quasi-static"]),
         ("MuJoCo less exact power, rms", f"{case.rms_per_leg(run):.3f} W a leg", INK),
         ("largest loop gap", f"{1e6 * run.loop_gap_max:.1f} µm", INK),
     )

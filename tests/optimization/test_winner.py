@@ -7,7 +7,7 @@ import pytest
 
 import fes_mj
 from fes_mj.common.errors import InputError
-from fes_mj.crosscheck.turn_output import turn_summary
+from fes_mj.crosscheck.turn_case import turn_summary
 from fes_mj.linkage.kinematics import solve
 from fes_mj.optimization.evenness import RippleLimit
 from fes_mj.optimization.optimize import run_searches

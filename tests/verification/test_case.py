@@ -5,7 +5,7 @@ import sys
 import pytest
 
 import fes_mj
-from fes_mj.crosscheck.turn_output import turn_summary
+from fes_mj.crosscheck.turn_case import turn_summary
 from fes_mj.simulation import stepping
 from fes_mj.verification.case import VerificationCase
 from fes_mj.verification.suite import FULL, verify

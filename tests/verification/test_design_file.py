@@ -9,7 +9,7 @@ import fes_mj
 from fes_mj.linkage import kinematics
 from fes_mj.linkage.design_file import DESIGNS, DIMENSIONS, design_path, design_toml
 from fes_mj.linkage.variables import VARIABLES
-from fes_mj.verification.design_file import POSES, file_error, measure
+from fes_mj.verification.geometry import POSES, file_error, measure
 
 ROOT = Path(__file__).parents[2]
 

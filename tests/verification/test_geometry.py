@@ -6,13 +6,7 @@ import pytest
 import fes_mj
 from fes_mj.linkage import kinematics
 from fes_mj.linkage.kinematics import Rotation
-from fes_mj.verification.geometry import closure_error, fourier_derivative, rate_errors
-
-
-def test_a_fourier_derivative_is_exact() -> None:
-    angle = np.linspace(0, 2 * np.pi, 64, endpoint=False)
-    assert fourier_derivative(np.exp(np.sin(angle))) == pytest.approx(np.cos(angle) * np.exp(np.sin(angle)), abs=1e-12)
-    assert fourier_derivative(np.exp(3j * angle)) == pytest.approx(3j * np.exp(3j * angle), abs=1e-12)
+from fes_mj.verification.geometry import closure_error, rate_errors
 
 
 def test_rate_errors_see_an_error_of_a_millionth(design: fes_mj.Design, monkeypatch: pytest.MonkeyPatch) -> None:
