@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 
+from fes_mj.common.errors import InputError
 from fes_mj.common.parallel import HERE, Workers, run_tasks
 from fes_mj.sweep.study import load_study
 from fes_mj.sweep.sweep import Sweep
@@ -63,6 +64,11 @@ def test_tasks_are_spread_over_processes() -> None:
     processes = {pid for _, (pid, _) in run_tasks(slow, [0.3, 0.3, 0.3, 0.3], Workers(jobs=2))}
     assert len(processes) == 2
     assert os.getpid() not in processes
+
+
+def test_fewer_than_one_job_is_refused() -> None:
+    with pytest.raises(InputError, match="--jobs is 0"):
+        list(run_tasks(slow, [0.0], Workers(jobs=0)))
 
 
 @pytest.mark.process

@@ -222,6 +222,8 @@ REFUSED = [
     ('file = "plain.csv"\nextension = { ankle = "positive" }', r"unknown key moments\.extension\.ankle"),
     ('file = "plain.csv"\nunit = "N m/kg"', r"measured_on\.rider\.mass is missing; moments\.unit is N m/kg"),
     ('file = "plain.csv"\nunits = "N m"', r"unknown key moments\.units"),
+    ('file = "one.csv"', r"one\.csv: 1 row"),
+    ('file = "twice.csv"', r"twice\.csv: line 1: .*'hip_Nm'"),
     ('file = "stuck.csv"', r"stuck\.csv: line 4: time is 1 after 1 s"),
     ('file = "short.csv"', r"short\.csv: crank_angle_deg .*200 deg"),
     ('file = "plain.csv"\nkinematics = "ik.mot"\ncrank = "crank_angle_deg"', r"crank angle in two ways"),
@@ -256,6 +258,8 @@ def test_what_cannot_be_used_is_named(text: str, words: str, tmp_path: Path) -> 
     (tmp_path / "headless.sto").write_text("time\tcrank_angle_deg\n0\t1\n")
     (tmp_path / "kinds.sto").write_text("a\ninDegrees=no\nendheader\ntime\tcrank_angle_deg\tknee_Nm\thip_Nm\n0 1 1 1\n")
     (tmp_path / "stuck.csv").write_text("time," + ",".join(HEADS) + "\n0,0,1,1\n1,90,2,2\n1,180,1,1\n2,270,1,1\n")
+    (tmp_path / "one.csv").write_text("time," + ",".join(HEADS) + "\n0,0,1,1\n")
+    (tmp_path / "twice.csv").write_text(",".join([*HEADS, HEADS[-1]]) + "\n0,1,1,1\n90,1,1,1\n200,1,1,1\n")
     (tmp_path / "short.csv").write_text("time," + ",".join(HEADS) + "\n0,0,1,1\n1,100,2,2\n2,200,1,1\n")
     with pytest.raises(InputError, match=words):
         load_moments(described(tmp_path, f"[moments]\n{text}\n"))

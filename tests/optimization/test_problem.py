@@ -110,6 +110,12 @@ def test_whatever_is_feasible_is_accepted_by_the_other_commands(
         fes_mj.build_mjcf(design, cadence=cadence, timestep=0.001)
 
 
+def test_a_joint_that_may_not_move_is_refused() -> None:
+    problem = problem_of("d1")
+    with pytest.raises(fes_mj.InputError, match=r"knee .* 0 deg/s"):
+        replace(problem, joint_speed=problem.joint_speed.map(lambda _: 0.0))
+
+
 def test_a_population_is_its_members() -> None:
     problem = problem_of("d2")
     x = population(problem, 300)

@@ -146,6 +146,12 @@ def test_the_steady_ripple_is_that_of_a_long_ride(smooth_moments: fes_mj.JointMo
     assert trace.ripple == pytest.approx(steady_ripple(at_its_speed), rel=0.01)
 
 
+def test_a_power_that_would_climb_a_wall_has_no_slope(smooth_moments: fes_mj.JointMoments) -> None:
+    strong = replace(smooth_moments, knee=100 * smooth_moments.knee, hip=100 * smooth_moments.hip)
+    with pytest.raises(fes_mj.InputError, match=r"d1.* W at "):
+        balancing_slope(Ride(fes_mj.load_design("d1"), strong))
+
+
 def test_the_recoil_of_the_frame_more_than_doubles_the_ripple() -> None:
     """D1 at 90 kg, of which all ride on the road; on a frame that is held still, as its swing of energy shows."""
     design, moments = fes_mj.load_design("d1"), fes_mj.load_moments("p1p2")

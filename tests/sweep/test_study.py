@@ -49,6 +49,9 @@ def test_the_example_is_a_study() -> None:
         ("size = 4", "size = 1000000000000", "sample.size is 1000000000000; it must be at most 1,000,000 values"),
         ("seed = 3", "seed = -1", "sample.seed is -1; it must be a whole number from 0, below 2^64"),
         ("seed = 3", f"seed = {2**64}", f"sample.seed is {2**64}; it must be"),
+        ("chunk = 7", "timestep = 0.001", "study.timestep is 0.001"),
+        ('"d1", ', '"d1", "d1", ', "grid.design is ['d1', 'd1', "),
+        ("R1x = [-0.80, -0.60]\ngear_ratio = [1.0, 2.0]\n", "", "sample.size is 4"),
         ("size = 4", "size = 9e9", "sample.size is 9000000000.0; it must be a whole number"),
     ],
 )
