@@ -10,6 +10,7 @@ import math
 import time
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from itertools import count
 from typing import Any
 
 import mujoco
@@ -140,8 +141,13 @@ def evaluations() -> dict[str, np.ndarray]:
 
 
 def simulated() -> dict[str, np.ndarray]:
-    """Simulated turns of D1 with riders of different mass per second."""
-    riders = [load_design("d1").with_rider(mass=60.0 + i) for i in range(TURNS)]
+    """Simulated turns of D1 with riders of different mass per second; simulate never meets a rider twice."""
+    masses = (60.0 + step / 1000 for step in count())
+
+    def new_riders() -> list[Design]:
+        return [load_design("d1").with_rider(mass=next(masses)) for _ in range(TURNS)]
+
+    riders = new_riders()
     steps = steps_per_turn(riders[0], riders[0].linkage.cadence)
     models = [build_mjcf(design, options=UNDRAWN).compile() for design in riders]
     loop = compiled_loop(torque_map(MOMENTS), joint_drives(ONE_LEG))
@@ -166,10 +172,10 @@ def simulated() -> dict[str, np.ndarray]:
 
     return rates(
         {
-            "single path: simulate": (TURNS, lambda: [simulate(design, MOMENTS) for design in riders]),
+            "single path: simulate": (TURNS, lambda: [simulate(design, MOMENTS) for design in new_riders()]),
             "batch path: simulate, compiled": (
                 TURNS,
-                lambda: [simulate(design, MOMENTS, options=MACHINE_CODE) for design in riders],
+                lambda: [simulate(design, MOMENTS, options=MACHINE_CODE) for design in new_riders()],
             ),
             "stepping of the batch path, one thread": (TURNS, lambda: list(map(fed_back, models))),
             "bare rollout, one thread": (

@@ -68,13 +68,13 @@ def evaluate(study: Study, chunk: int) -> Columns:
             rows = np.flatnonzero((columns["design"] == label) & (columns["moments"] == name))
             if rows.size:
                 values = {variable: column[rows] for variable, column in varied.items()}
-                found = _static(design, values, moments, len(rows))
+                results = _static(design, values, moments, len(rows))
                 if study.characteristics:
-                    found |= _characteristics(design, values, moments, found)
+                    results |= _characteristics(design, values, moments, results)
                 if study.analysis == "dynamic":
-                    found |= _dynamic(design, values, moments, study.timestep, found["why"])
-                for result, column in found.items():
-                    columns[result][rows] = column
+                    results |= _dynamic(design, values, moments, study.timestep, results["why"])
+                for key, column in results.items():
+                    columns[key][rows] = column
     columns["why"][columns["why"] == ""] = None
     return columns
 
@@ -108,18 +108,18 @@ def _static(design: Design, values: Columns, moments: JointMoments, count: int) 
     return result
 
 
-def _characteristics(design: Design, values: Columns, moments: JointMoments, found: Columns) -> Columns:
-    """Of the points of a batch that have a power; found: their quasi-static results."""
-    torque, rows = torque_map(moments), np.flatnonzero(found["why"] == "")
-    result = {name: np.full(len(found["why"]), np.nan) for name in _CHARACTERISTICS}
-    rpm = np.broadcast_to(found["cadence_rpm"], found["why"].shape)
+def _characteristics(design: Design, values: Columns, moments: JointMoments, statics: Columns) -> Columns:
+    """Of the points of a batch that have a power; statics: their quasi-static results."""
+    torque, rows = torque_map(moments), np.flatnonzero(statics["why"] == "")
+    result = {name: np.full(len(statics["why"]), np.nan) for name in _CHARACTERISTICS}
+    rpm = np.broadcast_to(statics["cadence_rpm"], statics["why"].shape)
     for start in range(0, len(rows), _AT_ONCE):
-        some = rows[start : start + _AT_ONCE]
-        motion = solve(replaced(design, {name: column[some, None] for name, column in values.items()}))
-        cadence = rpm[some, None] * RPM
+        block = rows[start : start + _AT_ONCE]
+        motion = solve(replaced(design, {name: column[block, None] for name, column in values.items()}))
+        cadence = rpm[block, None] * RPM
         power = np.atleast_2d(cadence * virtual_work(motion, torque.along(motion, cadence)))
         for name, value in (power_characteristics(power) | motion_characteristics(motion)).items():
-            result[name][some] = value
+            result[name][block] = value
     return result
 
 

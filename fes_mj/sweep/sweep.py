@@ -45,7 +45,7 @@ class Sweep(Brief):
     def manifest(self) -> dict[str, Any]:
         """All that the results depend on, as JSON, of long arrays a digest. The order of the grid is part of it."""
         study = self.study
-        moments = {name: digest(each) for name, each in study.moments.items()}
+        moments = {name: digest(moments) for name, moments in study.moments.items()}
         return {
             "fes-mj": version("fes-mj"),
             "analysis": study.analysis,
@@ -123,7 +123,7 @@ class Sweep(Brief):
         progress: Callable[[int], None] | None = None,
         finished: Sequence[int] | None = None,
     ) -> None:
-        """Evaluate the chunks that are not there yet; progress is told the points of each chunk as it is written.
+        """Evaluate the chunks that are not there yet; progress: called with the points of each new chunk.
 
         finished: as finished(), where that is known already.
         """
@@ -143,7 +143,7 @@ class Sweep(Brief):
                 progress(len(columns["point"]))
 
     def read(self, columns: Sequence[str] | None = None) -> Any:
-        """All finished results, or some of their columns, as one pyarrow table, by point."""
+        """All finished results, or these of their columns, as one pyarrow table, by point."""
         arrow = require_extra("optimize", "pyarrow")
         parts = (
             table.select(columns or table.column_names) for table in [self.schema(0).empty_table(), *self.tables()]

@@ -49,21 +49,21 @@ def alone(row: dict[str, Any], study: Path) -> QuasiStatic | InputError:
 def test_rows_say_what_the_solver_says(study: Path) -> None:
     said = set()
     for row in evaluated(study, WIDE):
-        found = alone(row, study)
-        assert row["turns"] == (not isinstance(found, fes_mj.AssemblyError))
+        single = alone(row, study)
+        assert row["turns"] == (not isinstance(single, fes_mj.AssemblyError))
         said.add(row["why"])
-        if isinstance(found, InputError):
-            assert row["why"].partition(" never")[0].partition(" through")[0] in str(found)
+        if isinstance(single, InputError):
+            assert row["why"].partition(" never")[0].partition(" through")[0] in str(single)
             assert np.isnan([row["power_mean_W"], row["power_sd_W"], row["work_per_turn_J"]]).all()
             assert np.isnan(row["extrapolated_share"]) == (not row["turns"])
         else:
             assert row["why"] is None
-            assert row["power_mean_W"] == pytest.approx(found.power_mean, rel=2e-4, abs=2e-3)
-            assert row["extrapolated_share"] == pytest.approx(found.extrapolation.share, abs=4e-3)
-            if found.power_sd is None:
+            assert row["power_mean_W"] == pytest.approx(single.power_mean, rel=2e-4, abs=2e-3)
+            assert row["extrapolated_share"] == pytest.approx(single.extrapolation.share, abs=4e-3)
+            if single.power_sd is None:
                 assert np.isnan(row["power_sd_W"])
             else:
-                assert row["power_sd_W"] == pytest.approx(found.power_sd, rel=2e-3)
+                assert row["power_sd_W"] == pytest.approx(single.power_sd, rel=2e-3)
     assert said >= {None, "thigh and shank cannot close", "the hip never enters the range of the moments"}
 
 
@@ -128,11 +128,11 @@ def test_characteristics_are_those_of_single_designs(study: Path) -> None:
     rows = evaluated(study, WIDE.replace("[grid]", "[study]\ncharacteristics = true\n[grid]", 1))
     compared = 0
     for row in rows:
-        found = alone(row, study)
-        if isinstance(found, InputError):
+        single = alone(row, study)
+        if isinstance(single, InputError):
             assert np.isnan([row["inactive_zone_share"], row["length_m"], row["energy_fluctuation"]]).all()
             continue
-        summary, compared = found.summary(), compared + 1
+        summary, compared = single.summary(), compared + 1
         assert row["inactive_zone_share"] == pytest.approx(summary["inactive_zone_share"], abs=6 / 720)
         for name in ("power_peak_to_peak_W", "transmission_angle_min_deg", "length_m", "height_m"):
             assert row[name] == pytest.approx(summary[name], rel=0.02, abs=0.02)

@@ -165,9 +165,9 @@ def test_no_flipped_bit_is_taken_for_a_result(done: Sweep) -> None:
         else:
             content[at:at] = random.bytes(int(random.integers(1, 60)))
         done.path(0).write_bytes(content)
-        found = done.table(0)
-        assert found is None or found.equals(table)
-        refused += found is None
+        read = done.table(0)
+        assert read is None or read.equals(table)
+        refused += read is None
     assert refused > 300
 
 
