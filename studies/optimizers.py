@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from fes_mj.common.markdown import Table
 from fes_mj.common.parallel import Workers
 from fes_mj.common.provenance import provenance
 from fes_mj.common.writing import json_text, write_text
@@ -100,15 +101,12 @@ def compare(target: str) -> list[Row]:
     return rows
 
 
-def winners(target: str) -> dict[float, Winner]:
-    """The best design by CMA-ES for each caution, manufacturable; simulated."""
-    found = {}
-    for caution in CAUTIONS:
-        task = problem(target, manufacturable=True, caution=caution)
-        best = run_searches(task, "cma-es", searches=SEARCHES, budget=SEARCH_BUDGET, seed=2, workers=WORKERS)[0]
-        name = f"{target}-caution-{caution:.0f}"
-        found[caution] = assess(task.design(best.x, name), task.template, load_moments(TARGETS[target]))
-    return found
+def best_with(target: str, caution: float) -> Winner:
+    """The best manufacturable design by CMA-ES, simulated."""
+    task = problem(target, manufacturable=True, caution=caution)
+    best = run_searches(task, "cma-es", searches=SEARCHES, budget=SEARCH_BUDGET, seed=2, workers=WORKERS)[0]
+    design = task.design(best.x, f"{target}-caution-{caution:.0f}")
+    return assess(design, task.template, load_moments(TARGETS[target]))
 
 
 def fronts() -> dict[str, Any]:
@@ -122,47 +120,6 @@ def fronts() -> dict[str, Any]:
         front = pareto_front(task, moments, BUDGET, seed=1)
         result[kind] = {"evaluations": front.evaluations, "power_W": front.power.tolist(), "x": front.x.tolist()}
     return result
-
-
-def markdown(rows: list[Row], won: dict[str, dict[float, Winner]], without: dict[str, Any]) -> str:
-    lines = [
-        "# Optimisers side by side",
-        "",
-        f"Power of the group a design was made for, W; {SEEDS} seeds; joint speeds and gear ratio at most those of "
-        "the printed design; the paper's constraints.",
-        "",
-        "| target | method | median | best | spread | evaluations | to pursuit's median |",
-        "|---|---|---|---|---|---|---|",
-    ]
-    for row in rows:
-        reached = "" if row.to_pursuit_median is None else f"{row.to_pursuit_median:,.0f}"
-        lines.append(
-            f"| {row.target} | {row.method} | {row.median:.2f} | {row.best:.2f} | {row.spread:.2f} | "
-            f"{row.evaluations:,.0f} | {reached} |"
-        )
-    lines += [
-        "",
-        "# Designs that beat the printed ones",
-        "",
-        "CMA-ES, with 5 mm of Grashof margin. Gain: over the identified printed design under the same recovered "
-        "moments, with the standard deviation of the difference. Caution: how many were taken off in the search.",
-        "",
-        "| target | caution | power, W | gain, W | simulated, W | agrees | knee reversals | ±1 mm | legs ±5 cm |",
-        "|---|---|---|---|---|---|---|---|---|",
-    ]
-    for target, found in won.items():
-        for caution, winner in found.items():
-            case, won_by = winner.case, winner.gain
-            assert won_by is not None
-            lines.append(
-                f"| {target} | {caution:.0f} | {case.static.power_mean:.2f} | "
-                f"{won_by.mean:+.2f} ± {won_by.deviation:.2f} | "
-                f"{case.simulation.power_mean:.2f} | {'yes' if case.agrees else 'NO'} | {winner.reversals.knee} | "
-                f"{100 * winner.manufacturing.turning:.1f} % | {100 * winner.rider.turning:.1f} % |"
-            )
-    lines += ["", "# What bounds the power", ""]
-    lines += [f"- {name}: {text}" for name, text in without.items()]
-    return "\n".join(lines) + "\n"
 
 
 def unbounded() -> dict[str, str]:
@@ -182,50 +139,89 @@ def unbounded() -> dict[str, str]:
     return notes
 
 
-def write(rows: list[Row], won: dict[str, dict[float, Winner]], bounds: dict[str, str], trade_off: Any) -> None:
-    """Table, numbers and design files of what is there so far."""
-    for found in won.values():
-        for winner in found.values():
-            text = design_toml(winner.design, "Found by studies/optimizers.py.")
-            write_text(FOLDER / f"{winner.design.name}.toml", text)
-    write_text(FOLDER / "comparison.md", markdown(rows, won, bounds))
-    content = {
-        "provenance": provenance([DEFAULT]),
-        "methods": [row._asdict() for row in rows],
-        "winners": [
-            {
-                "target": target,
-                "caution": caution,
-                "power_mean_W": winner.case.static.power_mean,
-                "gain_W": winner.gain.mean if winner.gain else None,
-                "gain_deviation_W": winner.gain.deviation if winner.gain else None,
-                "simulated_power_mean_W": winner.case.simulation.power_mean,
-                "timestep_s": winner.case.simulation.timestep,
-                "agrees": winner.case.agrees,
-                "reversals": dict(winner.reversals.items()),
-                "manufacturing": winner.manufacturing._asdict(),
-                "rider": winner.rider._asdict(),
-            }
-            for target, found in won.items()
-            for caution, winner in found.items()
-        ],
-        "bounds": bounds,
-        "fronts": trade_off,
+METHODS = {
+    "target": "",
+    "method": "",
+    **dict.fromkeys(("median", "best", "spread"), ".2f"),
+    **dict.fromkeys(("evaluations", "to pursuit's median"), ",.0f"),
+}
+WINNERS = {
+    "target": "",
+    "caution": ".0f",
+    "power, W": ".2f",
+    "gain, W": "",
+    "simulated, W": ".2f",
+    "agrees": "",
+    "knee reversals": "d",
+    **dict.fromkeys(("±1 mm, %", "legs ±5 cm, %"), ".1f"),
+}
+
+
+def markdown(content: dict[str, Any]) -> str:
+    """The page, from what comparison.json says."""
+    winners = [
+        (
+            won["target"],
+            won["caution"],
+            won["power_mean_W"],
+            f"{won['gain_W']:+.2f} ± {won['gain_deviation_W']:.2f}",
+            won["simulated_power_mean_W"],
+            "yes" if won["agrees"] else "NO",
+            won["reversals"]["knee"],
+            100 * won["manufacturing"]["turning"],
+            100 * won["rider"]["turning"],
+        )
+        for won in content["winners"]
+    ]
+    parts = [
+        "# Optimisers side by side",
+        f"Power of the group a design was made for, W; {SEEDS} seeds; joint speeds and gear ratio at most those of "
+        "the printed design; the paper's constraints.",
+        Table("", METHODS, [tuple(row.values()) for row in content["methods"]]).markdown().strip(),
+        "# Designs that beat the printed ones",
+        "CMA-ES, with 5 mm of Grashof margin. Gain: over the identified printed design under the same recovered "
+        "moments, with the standard deviation of the difference. Caution: how many were taken off in the search. Of "
+        "samples with lengths off by 1 mm, and with thigh and shank off by 5 cm: how many can turn.",
+        Table("", WINNERS, winners).markdown().strip(),
+        "# What bounds the power",
+        "\n".join(f"- {name}: {text}" for name, text in content["bounds"].items()),
+    ]
+    return "\n\n".join(parts) + "\n"
+
+
+def record(winner: Winner, target: str, caution: float) -> dict[str, Any]:
+    """A winner as comparison.json has it."""
+    return {
+        "target": target,
+        "caution": caution,
+        "power_mean_W": winner.case.static.power_mean,
+        "gain_W": winner.gain.mean if winner.gain else None,
+        "gain_deviation_W": winner.gain.deviation if winner.gain else None,
+        "simulated_power_mean_W": winner.case.simulation.power_mean,
+        "timestep_s": winner.case.simulation.timestep,
+        "agrees": winner.case.agrees,
+        "reversals": dict(winner.reversals.items()),
+        "manufacturing": winner.manufacturing._asdict(),
+        "rider": winner.rider._asdict(),
     }
-    write_text(FOLDER / "comparison.json", json_text(content))
 
 
 def main() -> None:
     """Compare, find winners, write the results; after every target what is known by then."""
     started = time.perf_counter()
     FOLDER.mkdir(parents=True, exist_ok=True)
-    rows: list[Row] = []
-    won: dict[str, dict[float, Winner]] = {}
-    bounds, trade_off = unbounded(), fronts()
+    content: dict[str, Any] = {
+        "provenance": provenance([DEFAULT]), "methods": [], "winners": [], "bounds": unbounded(), "fronts": fronts(),
+    }  # fmt: skip
     for target in TARGETS:
-        rows += compare(target)
-        won[target] = winners(target)
-        write(rows, won, bounds, trade_off)
+        content["methods"] += [row._asdict() for row in compare(target)]
+        for caution in CAUTIONS:
+            winner = best_with(target, caution)
+            text = design_toml(winner.design, "Found by studies/optimizers.py.")
+            write_text(FOLDER / f"{winner.design.name}.toml", text)
+            content["winners"].append(record(winner, target, caution))
+        write_text(FOLDER / "comparison.json", json_text(content))
+        write_text(FOLDER / "comparison.md", markdown(content))
         print(f"{target}: {time.perf_counter() - started:.0f} s", flush=True)
     print((FOLDER / "comparison.md").read_text())
 
