@@ -94,7 +94,7 @@ def tables(outcomes: list[Outcome]) -> Iterator[Table]:
         [
             (check.name, check.value, check.limit, check.unit, check.subject)
             for same in zip(*(outcome.checks for outcome in outcomes), strict=True)
-            for check in [max(same, key=lambda each: each.factor)]
+            for check in [max(same, key=lambda check: check.factor)]
         ],
     )
 

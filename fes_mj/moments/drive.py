@@ -1,4 +1,4 @@
-"""What the muscles are told: joint moments commanded by crank angle, as a stimulator reads it off the crank's encoder.
+"""What the muscles are commanded: joint moments by crank angle, as a stimulator reads it off the crank's encoder.
 
 The torque map takes the direction of a joint from the sign of its speed; here it is that of forward pedalling, whatever
 the crank is doing. Speed dependence and the muscles' lag come on top.

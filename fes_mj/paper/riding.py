@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from fes_mj.common.errors import require_extra
 from fes_mj.common.markdown import Table
 from fes_mj.common.units import KMH, RPM
 from fes_mj.linkage.design import Design
@@ -55,7 +56,8 @@ class Riding:
 
 
 def ride_all(done: Callable[[], None]) -> list[Riding]:
-    """All rides; without numba it takes hours."""
+    """All rides. Raises MissingPartError without numba."""
+    require_extra("optimize", "numba")
     rides: list[Riding] = []
     for group in GROUPS:
         muscles = _muscles(group)

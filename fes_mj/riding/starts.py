@@ -8,6 +8,7 @@ import numpy as np
 
 from fes_mj.common.arrays import BoolArray, FloatArray
 from fes_mj.common.brief import Brief
+from fes_mj.common.errors import require_extra
 from fes_mj.common.units import KMH
 from fes_mj.linkage.design import TRICYCLE_SPEED
 from fes_mj.riding.ride import Ride
@@ -57,13 +58,14 @@ class Starts(Brief):
 def starts(ride: Ride, angles: int | None = None) -> Starts:
     """Try rides from rest, launches and slopes. angles: crank angles that are tried, over half a turn.
 
-    A faster launch and a gentler slope are taken to do whatever a slower and a steeper one do. Raises
-    InputError as trace.ride.
+    A faster launch and a gentler slope are taken to do whatever a slower and a steeper one do. Raises InputError as
+    trace.ride, MissingPartError without numba: hundreds of rides in Python would take an hour.
 
     >>> ride = fes_mj.Ride(fes_mj.load_design("r2"), fes_mj.load_moments("p1p2"), duration=5)
     >>> fes_mj.starts(ride, angles=4)
     <Starts r2 p1p2 freewheel 0 %: from rest at 50 % of the crank angles, anywhere at 1.4 km/h>
     """
+    require_extra("optimize", "numba")
     half_turn = np.linspace(0, np.pi, angles or ANGLES, endpoint=False)
 
     def rides(**changes: Any) -> bool:

@@ -1,6 +1,6 @@
 """When to stimulate: the crank angles at which a muscle group's joint moment drives the crank, led by the muscle's lag.
 
-A joint moment M does the work M dphi over a joint angle, so it drives the crank where the joint turns its way: the
+A joint moment M does the work M dphi over a joint angle, so it drives the crank where the joint turns with it: the
 kinematic effectiveness of Bellman et al. 2016 (doi:10.1109/TNSRE.2015.2500180). The hamstrings count as knee flexors.
 What they do at the hip depends on the ratio of their two moment arms, which no net joint moment tells; `both_joints`
 says over how much of their window the hip extends as well, so that their hip moment helps whatever that ratio is.
@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from fes_mj.common.arrays import FloatArray
-from fes_mj.common.units import RPM
+from fes_mj.common.units import RPM, turns_per_second
 from fes_mj.linkage import kinematics
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.joints import PerJoint
@@ -80,13 +80,13 @@ class Window:
 
     def record(self, design: Design) -> dict[str, Any]:
         """Names and units of files: angles in deg within [0, 360), of ZERO and of the right leg's top dead centre."""
-        whole, core = (np.array(each) - self.lead for each in (self.works, self.core))
+        whole, core = (np.array(angles) - self.lead for angles in (self.works, self.core))
         return {
             "muscle": self.muscle,
             "moment": MUSCLES[self.muscle].moment,
             "leg": self.leg,
             "cadence_rpm": self.cadence / RPM,
-            "cadence_Hz": self.cadence / (2 * math.pi),
+            "cadence_Hz": turns_per_second(self.cadence),
             "lag_s": self.lag,
             "lead_deg": math.degrees(self.lead),
             "works_deg": _degrees(self.works),
@@ -118,10 +118,10 @@ def stimulation(design: Design, cadences: Sequence[float], lag: float = 0.0) -> 
     rate = kinematics.solve(design, angle).joint_rate
     windows = []
     for name, muscle in MUSCLES.items():
-        found = [_window(name, muscle, angle, rate, *ends) for ends in _positive(muscle.sense * rate[muscle.joint])]
-        least = LEAST_SHARE * sum(each.swing for each in found)
-        worth = [each for each in found if each.swing >= least]
-        windows += [each.at(leg, cadence, lag) for cadence in cadences for leg in TWO_LEGS for each in worth]
+        own = [_window(name, muscle, angle, rate, *ends) for ends in _positive(muscle.sense * rate[muscle.joint])]
+        least = LEAST_SHARE * sum(window.swing for window in own)
+        worth = [window for window in own if window.swing >= least]
+        windows += [window.at(leg, cadence, lag) for cadence in cadences for leg in TWO_LEGS for window in worth]
     return windows
 
 
@@ -154,7 +154,7 @@ def _positive(values: FloatArray) -> list[tuple[float, float]]:
 
 
 def _degrees(angles: Sequence[float] | FloatArray) -> list[float]:
-    return [float(each) for each in np.degrees(angles) % 360]
+    return [float(angle) for angle in np.degrees(angles) % 360]
 
 
 def summary(design: Design, windows: Sequence[Window]) -> dict[str, Any]:

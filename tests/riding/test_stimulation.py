@@ -18,7 +18,7 @@ from fes_mj.riding.stimulation import CORE, LEAST_SHARE, MUSCLES, Window, stimul
 
 
 def of(windows: list[Window], muscle: str, leg: str = "right") -> list[Window]:
-    return [each for each in windows if (each.muscle, each.leg) == (muscle, leg)]
+    return [window for window in windows if (window.muscle, window.leg) == (muscle, leg)]
 
 
 def test_the_knee_of_a_four_bar_extends_from_its_nearest_to_its_farthest_pedal() -> None:
@@ -54,16 +54,16 @@ def test_a_moment_drives_the_crank_inside_and_brakes_it_outside(design: fes_mj.D
 def test_swing_and_core(design: fes_mj.Design) -> None:
     windows, ranges = stimulation(design, [5.0]), np.radians(joint_ranges(design))
     # what extends comes back, but for what is left out
-    extended, flexed = (sum(each.swing for each in of(windows, muscle)) for muscle in ("quadriceps", "hamstrings"))
+    extended, flexed = (sum(window.swing for window in of(windows, muscle)) for muscle in ("quadriceps", "hamstrings"))
     assert extended == pytest.approx(flexed, rel=LEAST_SHARE)
-    assert max(each.swing for each in of(windows, "quadriceps")) <= ranges[1] - ranges[0] + 1e-5
-    assert max(each.swing for each in of(windows, "gluteus")) == pytest.approx(ranges[3] - ranges[2], rel=1e-3)
-    for each in windows:
-        assert each.works[0] < each.core[0] < each.core[1] < each.works[1]
-        joint, behind = MUSCLES[each.muscle].joint, math.pi if each.leg == "left" else 0.0
+    assert max(window.swing for window in of(windows, "quadriceps")) <= ranges[1] - ranges[0] + 1e-5
+    assert max(window.swing for window in of(windows, "gluteus")) == pytest.approx(ranges[3] - ranges[2], rel=1e-3)
+    for window in windows:
+        assert window.works[0] < window.core[0] < window.core[1] < window.works[1]
+        joint, behind = MUSCLES[window.muscle].joint, math.pi if window.leg == "left" else 0.0
         ends, all_along = (
             np.abs(solve(design, angles - behind).joint_rate[joint])
-            for angles in (np.array(each.core), np.linspace(*each.works, 5000))
+            for angles in (np.array(window.core), np.linspace(*window.works, 5000))
         )
         assert ends == pytest.approx(CORE * all_along.max(), rel=0.02)
 
@@ -72,15 +72,15 @@ def test_the_lag_turns_every_window_back_by_what_the_crank_turns_in_it() -> None
     d1 = fes_mj.load_design("d1")
     cadences = [40 * RPM, 90 * RPM]
     plain, led = stimulation(d1, cadences), stimulation(d1, cadences, lag=0.1)
-    assert [each.works for each in plain] == [each.works for each in led]
-    for each in led:
-        found = each.record(d1)
-        turned = (np.array(found["works_deg"]) - found["stimulate_deg"]) % 360
-        assert turned == pytest.approx(0.1 * found["cadence_rpm"] * 6)  # a rpm is 6 deg/s
-        assert found["lead_deg"] == pytest.approx(360 * 0.1 * found["cadence_Hz"])
+    assert [window.works for window in plain] == [window.works for window in led]
+    for window in led:
+        record = window.record(d1)
+        turned = (np.array(record["works_deg"]) - record["stimulate_deg"]) % 360
+        assert turned == pytest.approx(0.1 * record["cadence_rpm"] * 6)  # a rpm is 6 deg/s
+        assert record["lead_deg"] == pytest.approx(360 * 0.1 * record["cadence_Hz"])
         top = math.degrees(turning(d1).top_dead_centre)
         for name in ("stimulate", "stimulate_core"):
-            zeros = (np.array(found[f"{name}_deg"]) - found[f"{name}_from_tdc_deg"] - top) % 360
+            zeros = (np.array(record[f"{name}_deg"]) - record[f"{name}_from_tdc_deg"] - top) % 360
             assert np.minimum(zeros, 360 - zeros) == pytest.approx(0, abs=1e-9)
 
 
@@ -88,9 +88,9 @@ def test_the_left_leg_follows_half_a_turn_later(design: fes_mj.Design) -> None:
     windows = stimulation(design, [5.0])
     for muscle in MUSCLES:
         right, left = (of(windows, muscle, leg) for leg in ("right", "left"))
-        starts = [sorted(each.works[0] % (2 * np.pi) for each in legs) for legs in (right, left)]
+        starts = [sorted(window.works[0] % (2 * np.pi) for window in legs) for legs in (right, left)]
         assert starts[1] == pytest.approx(sorted((start + math.pi) % (2 * math.pi) for start in starts[0]))
-        assert all(0 <= each.works[0] < 2 * np.pi for each in (*right, *left))
+        assert all(0 <= window.works[0] < 2 * np.pi for window in (*right, *left))
 
 
 def test_hamstrings_help_at_the_hip_where_it_extends() -> None:
