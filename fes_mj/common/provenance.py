@@ -18,18 +18,15 @@ from fes_mj.common.text import printable
 
 def provenance(inputs: Iterable[Path] = (), packages: Iterable[str] = ()) -> dict[str, Any]:
     """Versions (also of `packages`), command line with the program's bare name, SHA-256 of every input file by name."""
+    program = Path(sys.argv[0])
+    name = program.parent.name if program.name == "__main__.py" else program.name  # of `python -m` the package's
     return {
         "fes_mj": version("fes-mj"),
         "python": platform.python_version(),
         **{package: version(package) for package in ("mujoco", "numpy", "scipy", *packages)},
-        "command": printable(shlex.join([_program(Path(sys.argv[0])), *sys.argv[1:]])),
+        "command": printable(shlex.join([name, *sys.argv[1:]])),
         "inputs": {_name(path): hashlib.sha256(path.read_bytes()).hexdigest() for path in inputs},
     }
-
-
-def _program(path: Path) -> str:
-    """The script's name; of `python -m package` the package's."""
-    return path.parent.name if path.name == "__main__.py" else path.name
 
 
 def _name(path: Path) -> str:

@@ -35,14 +35,9 @@ def require_folder(folder: Path, what: str) -> None:
         raise InputError(f"{folder}: cannot write {what}: no permission; name a folder you can write to")
 
 
-def require_makeable(folder: Path, what: str) -> None:
-    """Raise InputError unless `folder` exists and can be written to, or can be made in one that does."""
-    require_folder(folder if folder.exists() else folder.parent, what)
-
-
 def make_folder(folder: Path, what: str) -> None:
     """Make `folder` in an existing one unless it is there. Raises InputError if that cannot be."""
-    require_makeable(folder, what)
+    require_folder(folder if folder.exists() else folder.parent, what)
     try:
         folder.mkdir(exist_ok=True)
     except (OSError, ValueError) as error:  # ValueError: a name that no file can have
@@ -99,7 +94,7 @@ def require_replaceable(paths: Iterable[Path], what: str, inputs: Collection[Pat
 
 def require_results(folder: Path, stem: str, suffixes: Iterable[str], inputs: Collection[Path] = ()) -> dict[str, Path]:
     """Where a set of files goes in a folder that is made if its parent exists, by suffix; refused as by the others."""
-    require_makeable(folder, "the results")
+    require_folder(folder if folder.exists() else folder.parent, "the results")
     paths = {suffix: folder / f"{stem}.{suffix}" for suffix in suffixes}
     if folder.exists():
         require_replaceable(paths.values(), "the results", inputs)

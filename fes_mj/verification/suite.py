@@ -6,7 +6,6 @@ from typing import TypeAlias
 
 import numpy as np
 
-from fes_mj.common.arrays import FloatArray
 from fes_mj.common.checks import Check, check
 from fes_mj.common.errors import UnstableError
 from fes_mj.common.units import turns_per_second
@@ -22,6 +21,7 @@ from fes_mj.verification.references import exact_checks
 def turn_checks(case: VerificationCase) -> list[Check]:
     """One simulated turn: the cross-check, and an audited second run of the same model beside it."""
     run, ledger = case.simulation, case.audit
+    apart = ledger.crank_moment - ledger.servo_moment
     advance = float(run.crank_speed.sum() * run.timestep)
     work = case.power_scale * 2 * math.pi * run.turns / case.cadence
     count = min(len(ledger.crank_moment), len(run.crank_moment))
@@ -29,7 +29,7 @@ def turn_checks(case: VerificationCase) -> list[Check]:
         case.check("stability", 0),
         *case.checks,
         case.check("whole_turns", abs(advance - 2 * math.pi * run.turns)),
-        case.check("sensor_servo", _rms(ledger.crank_moment - ledger.servo_moment) / servo_rounding(case.cadence)),
+        case.check("sensor_servo", np.sqrt(np.mean(apart**2)) / servo_rounding(case.cadence)),
         case.check("pairing", np.abs(ledger.crank_moment[:count] - run.crank_moment[:count]).max()),
         case.check("energy_audit", abs(ledger.integration) / work),
         case.check("constraint_work", abs(ledger.constraint_work) / work),
@@ -40,10 +40,6 @@ def turn_checks(case: VerificationCase) -> list[Check]:
 def servo_rounding(cadence: float) -> float:
     """To what the servo's force is known, N m: its gain times the rounding of the speed (rad/s) it compares."""
     return SERVO_GAIN * cadence * float(np.finfo(float).eps)
-
-
-def _rms(values: FloatArray) -> float:
-    return float(np.sqrt(np.mean(values**2)))
 
 
 def two_leg_checks(case: VerificationCase) -> list[Check]:
