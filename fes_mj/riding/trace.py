@@ -6,6 +6,7 @@ from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 
 from fes_mj.common.arrays import BoolArray, FloatArray
 from fes_mj.common.brief import Brief
@@ -20,6 +21,7 @@ LAST_TURNS = 5  # whole turns at the end, over which a ride is described
 # A tricycle that is no faster than this at the end, or this far back from where it had come, does not ride. Dry
 # friction stops it within a hundredth of a second of the former.
 LEAST_SPEED, LEAST_ADVANCE = 1e-3, 1e-5  # m/s, m
+SPLINE = 4  # samples on either side of a crank angle at which speeds are read
 ROWS = 4096  # samples that are made before Python looks at them
 MOST_ROWS = 2**21  # an hour of fast riding; beyond it something is wrong
 
@@ -134,11 +136,17 @@ class Trace(Brief):
         """Rate at which kinetic energy grows over the last whole turns, W; height returns. None without any turn."""
         if not self.whole_turns:
             return None
-        masses = self.ride.table.masses
-        row = int(self.crank_angle[-1] % (2 * np.pi) * (len(masses.inertia) - 1) / (2 * np.pi))
-        crank, speed = (np.array(self.ends(column)) for column in (self.crank_speed, self.speed))
-        kinetic = (masses.inertia[row] * crank**2 + self.ride.load.inertia * speed**2) / 2
-        kinetic -= masses.recoil[row] * crank * speed
+        masses, end = self.ride.table.masses, self.crank_angle[-1]
+        turn = np.linspace(0, 2 * np.pi, len(masses.inertia))
+        inertia, recoil = (np.interp(end % (2 * np.pi), turn, curve) for curve in (masses.inertia, masses.recoil))
+        # a straight line between two samples would be off by a third of a percent of the power where the crank jerks
+        first = self.last_turns.start
+        near = slice(max(0, first - SPLINE), first + SPLINE)
+        angle, kept = np.unique(self.crank_angle[near], return_index=True)
+        speeds = np.stack([self.crank_speed, self.speed], axis=1)
+        begun = CubicSpline(angle, speeds[near][kept])(end - 2 * np.pi * self.whole_turns)
+        crank, speed = np.stack([begun, speeds[-1]], axis=1)
+        kinetic = (inertia * crank**2 + self.ride.load.inertia * speed**2) / 2 - recoil * crank * speed
         began, ended = self.ends(self.time)
         return float(kinetic[1] - kinetic[0]) / (ended - began)
 

@@ -12,7 +12,7 @@ from fes_mj.riding.ride import Ride, Road, balancing_slope
 from fes_mj.riding.trace import ride as ride_by_equation
 
 P1P2 = fes_mj.load_moments("p1p2")
-HILL = replace(P1P2, torque_velocity=load_torque_velocity("hill"))
+HILL, HILL_P1P3 = (fes_mj.load_moments(group).at_speed(load_torque_velocity("hill")) for group in ("p1p2", "p1p3"))
 
 
 @pytest.mark.parametrize(
@@ -22,6 +22,7 @@ HILL = replace(P1P2, torque_velocity=load_torque_velocity("hill"))
         Ride(fes_mj.load_design("r2"), P1P2, Road(slope=0.02), "fixed", duration=4.0),
         Ride(fes_mj.load_design("trt"), HILL, Road(slope=-0.01), launch=0.0, start=1.0, duration=6.0),
         Ride(fes_mj.load_design("d2"), HILL, lag=0.1, transmission="fixed", duration=4.0),
+        Ride(fes_mj.load_design("d2"), HILL_P1P3, transmission="fixed", duration=20.0),  # it ends where the crank jerks
     ],
     ids=lambda ride: ride.name,
 )
