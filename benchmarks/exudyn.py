@@ -27,8 +27,12 @@ from fes_mj.linkage.segments import GRAVITY, inertias  # noqa: E402
 from fes_mj.moments.torque_map import torque_map  # noqa: E402
 from fes_mj.simulation.compiled import compiled_loop  # noqa: E402
 from fes_mj.simulation.mjcf import ModelOptions, build_mjcf  # noqa: E402
-from fes_mj.simulation.sensors import Sensors  # noqa: E402
-from fes_mj.simulation.stepping import PRE_ROLL, feedback_loop, run_loop  # noqa: E402
+from fes_mj.simulation.stepping import (  # noqa: E402
+    PRE_ROLL,
+    Sensors,
+    feedback_loop,
+    run_loop,
+)
 from fes_mj.statics.equilibrium import crank_moment  # noqa: E402
 
 DESIGNS, ASKED, REPETITIONS = ("d1", "r2"), 0.005, 15  # W rms

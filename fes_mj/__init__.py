@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from fes_mj.riding.stimulation import stimulation as stimulation
     from fes_mj.riding.trace import ride as ride
     from fes_mj.simulation.bench import simulate as simulate
+    from fes_mj.simulation.export import export as export
     from fes_mj.simulation.mjcf import build_mjcf as build_mjcf
-    from fes_mj.simulation.model_files import export as export
     from fes_mj.statics.turn import quasi_static as quasi_static
     from fes_mj.sweep.sweep import run_sweep as run_sweep
 
@@ -49,7 +49,7 @@ _PUBLIC = {
     "simulation.mjcf": ("build_mjcf",),
     "simulation.bench": ("simulate",),
     "crosscheck.turn_case": ("Case",),
-    "simulation.model_files": ("export",),
+    "simulation.export": ("export",),
     # On the road
     "riding.ride": (
         "Ride",

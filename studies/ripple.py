@@ -25,8 +25,7 @@ from fes_mj.optimization.limits import DEFAULT
 from fes_mj.optimization.optimize import run_searches
 from fes_mj.optimization.problem import Problem
 from fes_mj.optimization.winner import assess
-from fes_mj.riding.ride import Ride, balancing_slope
-from fes_mj.riding.ripple import steady_ripple
+from fes_mj.riding.ride import Ride, balancing_slope, steady_ripple
 from studies.optimizers import problem
 
 FOLDER = Path("results/optimization")

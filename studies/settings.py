@@ -33,8 +33,8 @@ from fes_mj.moments.torque_map import TorqueMap
 from fes_mj.simulation import mjcf, stepping
 from fes_mj.simulation.bench import BenchOptions, Simulation
 from fes_mj.simulation.mjcf import Physics
-from fes_mj.simulation.step_error import predicted_errors
 from fes_mj.simulation.stepping import FORCE_EVERY, Loop, drive_addresses
+from fes_mj.simulation.time_step import predicted_errors
 from fes_mj.statics.turn import quasi_static
 
 ROOT = Path(__file__).parents[1]

@@ -26,8 +26,7 @@ from fes_mj.common.writing import write_text
 from fes_mj.crosscheck.turn_case import Case
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.design_file import DESIGNS
-from fes_mj.simulation.step_error import predicted_errors
-from fes_mj.simulation.time_step import SHARE, TRIAL, steps_per_turn
+from fes_mj.simulation.time_step import SHARE, TRIAL, predicted_errors, steps_per_turn
 from studies.random_linkages import random_design, random_moments
 
 ROOT = Path(__file__).parents[1]

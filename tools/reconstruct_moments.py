@@ -11,8 +11,8 @@ import numpy as np
 from fes_mj.common.arrays import FloatArray
 from fes_mj.common.reading import DATA
 from fes_mj.common.writing import replacing, write_text
+from fes_mj.moments.files import moments_of
 from fes_mj.moments.joint_moments import COLUMNS
-from fes_mj.moments.samples import moments_of
 from fes_mj.paper.evidence import load_evidence, of_group
 from fes_mj.paper.reconstruction import reconstruct
 from fes_mj.paper.statements import allowed_curves

@@ -17,9 +17,8 @@ from fes_mj.linkage.design_file import identified_draws, load_design
 from fes_mj.linkage.joints import JOINTS
 from fes_mj.linkage.kinematics import FULL_TURN
 from fes_mj.linkage.variables import LENGTHS, component
-from fes_mj.moments.files import load_moments
+from fes_mj.moments.files import load_moments, sampled_coefficients
 from fes_mj.moments.joint_moments import GROUPS, JointMoments
-from fes_mj.moments.samples import sampled_coefficients
 from fes_mj.moments.torque_velocity import TorqueVelocity, drawn_relations, stacked
 
 # As data/error_budget.toml has them; the last has no effect on a mean power.

@@ -37,7 +37,7 @@ def export(
     scene
         Also write scene.xml beside the model: floor, light and camera.
     """
-    from fes_mj.simulation.model_files import export as export_model
+    from fes_mj.simulation.export import export as export_model
     from fes_mj.simulation.variants import variant_options
 
     variants = [*(variant or ()), *(["two-legs"] if options.legs == 2 else [])]

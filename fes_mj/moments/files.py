@@ -1,4 +1,4 @@
-"""Files of joint moments: plain CSV, and measurement files that say what a file of moments means."""
+"""Files of joint moments: plain CSV, measurement files and the trials they describe, curves drawn for a group."""
 
 import math
 from dataclasses import dataclass, replace
@@ -7,22 +7,23 @@ from typing import Any
 
 import numpy as np
 
+from fes_mj.common.arrays import FloatArray
 from fes_mj.common.errors import InputError
 from fes_mj.common.reading import DATA
 from fes_mj.common.text import printable
 from fes_mj.common.units import RPM, turns_per_second
 from fes_mj.common.writing import csv_text
 from fes_mj.linkage import kinematics
-from fes_mj.moments.fourier import fit, fourier, gaps
+from fes_mj.moments.fourier import fit, fourier
 from fes_mj.moments.joint_moments import COLUMNS, GROUPS, MEASURED_POINTS, JointMoments, Misreading
-from fes_mj.moments.measured_turns import measured_turns
+from fes_mj.moments.measured_turns import largest_gap, measured_turns, odd_angles, odd_moments
 from fes_mj.moments.measurement_file import Description
-from fes_mj.moments.misreading import odd_angles, odd_moments
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE, ReferenceTricycle
 from fes_mj.moments.trial import WHAT, Turn, bounded, load_table
 from fes_mj.moments.uncertainty import power_weights, standard_deviation
 
 _FOLDER = DATA / "moments"
+DEGREES = np.arange(360.0)  # crank angles of a rider group's curves, from top dead centre
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,11 +39,6 @@ class Measurement:
         return cls((Turn(moments.crank_angle, moments.knee, moments.hip),), moments)
 
     @property
-    def largest_gap(self) -> float:
-        """Widest part of a turn without a sample, rad."""
-        return max(float(gaps(turn.crank_angle)[1].max()) for turn in self.turns)
-
-    @property
     def power_sd(self) -> float | None:
         """Standard deviation of the mean power in the tricycle of the measurement, W; None for a single turn."""
         reference, covariance = self.moments.measured_on, self.moments.covariance
@@ -54,13 +50,13 @@ class Measurement:
     def summary(self) -> dict[str, Any]:
         """What is understood of the file, as JSON names and units it."""
         moments = self.moments
-        curves, cadence = moments.at(np.radians(np.arange(360))), moments.measured_on.cadence
+        curves, cadence = moments.at(np.radians(DEGREES)), moments.measured_on.cadence
         return {
             "knee_Nm": [curves.knee.min(), curves.knee.max()],
             "hip_Nm": [curves.hip.min(), curves.hip.max()],
             "turns": len(self.turns),
             "samples": sum(len(turn.knee) for turn in self.turns),
-            "largest_gap_deg": math.degrees(self.largest_gap),
+            "largest_gap_deg": math.degrees(largest_gap(self.turns)),
             "power_mean_W": sum(moments.power_mean),
             "power_sd_W": self.power_sd,
             "work_per_turn_J": sum(moments.power_mean) / turns_per_second(cadence),
@@ -114,8 +110,7 @@ def measured_files(path: Path) -> list[Path]:
 
 def moments_csv(moments: JointMoments) -> str:
     """The plain CSV of moments, a row a degree."""
-    degrees = np.arange(360.0)
-    return csv_text(dict(zip(COLUMNS, (degrees, *moments.at(np.radians(degrees))), strict=True)))
+    return csv_text(dict(zip(COLUMNS, (DEGREES, *moments.at(np.radians(DEGREES))), strict=True)))
 
 
 def _measurement(
@@ -137,3 +132,26 @@ def _measurement(
         mean = Turn(angle, *(fourier(angle) @ part for part in np.split(rows.mean(axis=0), 2)))
     moments = JointMoments(printable(path.stem), *mean, covariance, None, measured_on, cadence_known)
     return Measurement(tuple(turns), replace(moments, misreadings=(*odd, *odd_moments(turns, moments))))
+
+
+def sampled_coefficients(group: str) -> FloatArray:
+    """Fourier coefficients (fes_mj.moments.fourier) of the curves drawn for "p1p2" or "p1p3", knee's then hip's, N m.
+
+    Shape (curves, 98). The curves are independent of each other: any part of them is a sample as well.
+    """
+    with np.load(_FOLDER / f"{group}-samples.npz") as stored:
+        return np.asarray(stored["coefficients"], float)
+
+
+def sampled_moments(group: str, count: int | None = None) -> list[JointMoments]:
+    """The curves drawn for "p1p2" or "p1p3", or so many of them, each as moments of its own, without a covariance."""
+    curves = sampled_coefficients(group)
+    rows = np.linspace(0, len(curves) - 1, count or len(curves)).astype(int)
+    return [moments_of(curves[row], f"{group} {row + 1}") for row in rows]
+
+
+def moments_of(coefficients: FloatArray, name: str) -> JointMoments:
+    """The curves of Fourier coefficients, knee's then hip's, N m, shape (98,), at every degree."""
+    angle = np.radians(DEGREES)
+    knee, hip = (fourier(angle) @ part for part in np.split(coefficients, 2))
+    return JointMoments(name, angle, knee, hip)

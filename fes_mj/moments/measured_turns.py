@@ -1,5 +1,7 @@
-"""The turns that the files of a measurement hold, as its measurement file says to read them."""
+"""The turns that the files of a measurement hold, read as its measurement file says, and what looks misread in them."""
 
+import math
+from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
 
@@ -11,10 +13,12 @@ from fes_mj.common.reading import TextTable
 from fes_mj.linkage.inertia import leg_moments
 from fes_mj.linkage.joints import JOINTS
 from fes_mj.linkage.kinematics import solve
-from fes_mj.moments.joint_moments import Misreading
+from fes_mj.moments.fourier import WIDEST_GAP, gaps
+from fes_mj.moments.joint_moments import JointMoments, Misreading
 from fes_mj.moments.measurement_file import Description
-from fes_mj.moments.misreading import odd_angles
 from fes_mj.moments.trial import WHAT, Turn, bounded, by_crank, by_knee, is_trial, load_table, says_radians, times
+
+LEAST_MOMENT = 2.0  # N m: a smaller largest one looks like N m/kg
 
 
 def measured_turns(description: Description) -> tuple[list[Turn], list[Misreading]]:
@@ -94,3 +98,42 @@ def _angle_unit(description: Description, table: TextTable) -> str:
             f"{unit}; correct one of them"
         )
     return unit
+
+
+def odd_angles(angle: FloatArray, unit: str) -> list[Misreading]:
+    """Whether the unit of crank angles looks wrong."""
+    largest = float(np.abs(angle).max(initial=0.0))
+    if unit == "deg" and largest < 2 * math.pi:
+        return [Misreading("radians", f"all crank angles are below {largest:.3g} deg; are they in radians?")]
+    if unit == "rad" and largest > 60 * math.pi and np.abs(np.diff(angle)).max() > math.pi:
+        return [Misreading("degrees", f"crank angles go up to {largest:.4g} rad; are they in degrees?")]
+    return []
+
+
+def odd_moments(turns: Sequence[Turn], moments: JointMoments) -> list[Misreading]:
+    """What looks wrong in the moments themselves."""
+    largest = max(float(np.abs([turn.knee, turn.hip]).max()) for turn in turns)
+    gap, power = largest_gap(turns), moments.power_mean
+    oddities = {
+        "per_kg": (largest < LEAST_MOMENT, f"the largest moment is {largest:.3g} N m; is the unit N m/kg?"),
+        "gap": (
+            gap > WIDEST_GAP,
+            f"there is no sample in {np.degrees(gap):.0f} deg of the turn; a straight line is drawn across",
+        ),
+        "negative_power": (
+            sum(power) < 0,
+            f"the mean power in the tricycle of the measurement is {sum(power):.2f} W: these moments brake; "
+            "are signs, zero or sense of the crank angle as declared?",
+        ),
+        "exchanged": (
+            power.knee < 0 < power.hip - power.knee,
+            f"the knee takes {-power.knee:.2f} W from the crank; "
+            "are extension and flexion exchanged? Extension is positive",
+        ),
+    }
+    return [Misreading(name, text) for name, (odd, text) in oddities.items() if odd]
+
+
+def largest_gap(turns: Sequence[Turn]) -> float:
+    """Widest part of a turn without a sample, rad."""
+    return max(float(gaps(turn.crank_angle)[1].max()) for turn in turns)

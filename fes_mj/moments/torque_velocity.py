@@ -31,21 +31,20 @@ class TorqueVelocity:
     def factor(self, joint: str, speed: Any) -> FloatArray:
         """Moment per moment at rest; speed in rad/s along the moment, negative where it lengthens the muscle."""
         relative = np.asarray(speed) / self.max_speed[joint]
-        return np.asarray(self._factor(np.clip(relative, 0, 1), np.maximum(-relative, 0)))
+        shortening, lengthening = np.clip(relative, 0, 1), np.maximum(-relative, 0)
+        return np.asarray(hill_factor(self.curvature, self.eccentric_plateau, shortening, lengthening))
 
     def float_factor(self, joint: str, speed: float) -> float:
         """The same for a plain float, without numpy."""
         relative = speed / self.max_speed[joint]
-        return float(self._factor(min(max(relative, 0.0), 1.0), max(-relative, 0.0)))
+        shortening, lengthening = min(max(relative, 0.0), 1.0), max(-relative, 0.0)
+        return float(hill_factor(self.curvature, self.eccentric_plateau, shortening, lengthening))
 
     def taken(self, rows: Any) -> "TorqueVelocity":
         """The relations of a batch at `rows` (an index array)."""
         numbers: dict[str, Any] = {name: np.asarray(getattr(self, name))[rows] for name in _NUMBERS}
         speeds: Any = {joint: np.asarray(speed)[rows] for joint, speed in self.max_speed.items()}
         return replace(self, max_speed=speeds, **numbers)
-
-    def _factor(self, shortening: Any, lengthening: Any) -> Any:
-        return hill_factor(self.curvature, self.eccentric_plateau, shortening, lengthening)
 
 
 def hill_factor(curvature: float, eccentric_plateau: float, shortening: Any, lengthening: Any) -> Any:

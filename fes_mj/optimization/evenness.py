@@ -12,8 +12,7 @@ from fes_mj.linkage.kinematics import FULL_TURN, Motion, solve
 from fes_mj.linkage.legs import all_legs
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.torque_map import torque_map
-from fes_mj.riding.ride import Ride, Road
-from fes_mj.riding.ripple import even_ripple
+from fes_mj.riding.ride import Ride, Road, even_ripple
 from fes_mj.statics.characteristics import energy_fluctuation
 from fes_mj.statics.equilibrium import virtual_work
 

@@ -12,8 +12,7 @@ from fes_mj.linkage.design import Design
 from fes_mj.linkage.joints import PerJoint
 from fes_mj.linkage.variables import lengths, with_lengths
 from fes_mj.moments.joint_moments import JointMoments
-from fes_mj.riding.ride import Ride
-from fes_mj.riding.ripple import steady_ripple
+from fes_mj.riding.ride import Ride, steady_ripple
 from fes_mj.statics.cycles import cycles, joint_speeds
 from fes_mj.statics.turn import difference_sd, quasi_static
 from fes_mj.statics.work_table import WorkTable

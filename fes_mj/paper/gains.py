@@ -13,8 +13,7 @@ from fes_mj.moments.uncertainty import with_sd
 from fes_mj.paper.captions import captioned
 from fes_mj.paper.printed import SIX_BARS, table1
 from fes_mj.paper.runs import Runs, joint_speed
-from fes_mj.riding.ride import Ride, Road
-from fes_mj.riding.ripple import steady_ripple
+from fes_mj.riding.ride import Ride, Road, steady_ripple
 from fes_mj.statics.characteristics import energy_swing
 from fes_mj.statics.turn import QuasiStatic, quasi_static, ratio_sd
 

@@ -14,9 +14,9 @@ from fes_mj.linkage.design import Design
 from fes_mj.linkage.design_file import load_design
 from fes_mj.linkage.kinematics import solve
 from fes_mj.linkage.variables import LENGTHS, replaced
+from fes_mj.moments.files import sampled_coefficients
 from fes_mj.moments.joint_moments import GROUPS
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
-from fes_mj.moments.samples import sampled_coefficients
 from fes_mj.moments.uncertainty import power_weights
 from fes_mj.paper.evidence import Evidence, functional, of_group
 from fes_mj.paper.identification import LENGTH_ROUNDING, inside_rounding

@@ -16,9 +16,8 @@ from fes_mj.common.markdown import Table
 from fes_mj.common.units import KMH, RPM
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.design_file import DESIGNS, load_design
-from fes_mj.moments.files import load_moments
+from fes_mj.moments.files import load_moments, sampled_moments
 from fes_mj.moments.joint_moments import GROUPS, JointMoments
-from fes_mj.moments.samples import sampled_moments
 from fes_mj.moments.torque_velocity import drawn_relations, load_torque_velocity
 from fes_mj.moments.uncertainty import with_sd
 from fes_mj.paper.captions import captioned

@@ -17,8 +17,7 @@ from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.torque_map import TorqueMap, torque_map
 from fes_mj.simulation.appearance import Spec
 from fes_mj.simulation.mjcf import REAL, ModelOptions, Physics, build_mjcf
-from fes_mj.simulation.sensors import Sensors
-from fes_mj.simulation.stepping import PRE_ROLL, LoopMaker, Run, feedback_loop, run_loop
+from fes_mj.simulation.stepping import PRE_ROLL, LoopMaker, Run, Sensors, feedback_loop, run_loop
 from fes_mj.simulation.time_step import steps_per_turn
 from fes_mj.statics.extrapolation import turning_in_range
 

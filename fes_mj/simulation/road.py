@@ -3,24 +3,45 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, partial
-from typing import ClassVar
+from typing import Any, ClassVar, TypeAlias
 
 import mujoco
 import numpy as np
 from scipy.integrate import cumulative_trapezoid
 
 from fes_mj.common.arrays import FloatArray
+from fes_mj.common.machine_code import COMPILED, readable
 from fes_mj.linkage.legs import TWO_LEGS, Leg
 from fes_mj.riding.ride import Ride
 from fes_mj.riding.trace import Trace
 from fes_mj.simulation.appearance import Spec
 from fes_mj.simulation.bench import joint_drives
-from fes_mj.simulation.road_control import road_control
-from fes_mj.simulation.road_loop import MakeControl, road_loop
+from fes_mj.simulation.road_control import RoadControl, act, memory_of, road_control
 from fes_mj.simulation.road_mjcf import DRIVETRAIN, ROAD, TIMESTEP, build_road_mjcf, start_state
-from fes_mj.simulation.sensors import Sensors
-from fes_mj.simulation.stepping import PRE_ROLL, Loop, Run, energy, run_loop
+from fes_mj.simulation.stepping import PRE_ROLL, Loop, Run, Sensors, controlled_loop, energy, run_loop
 from fes_mj.statics.extrapolation import turning_in_range
+
+MakeControl: TypeAlias = Callable[[mujoco.MjModel], RoadControl]  # the control of a ride in its model
+
+
+def road_loop(make_control: MakeControl) -> Loop:
+    """The loop that steps a ride under a control: in machine code where numba is installed, elsewhere in Python."""
+    if COMPILED:
+        from fes_mj.simulation.road_compiled import compiled_road_loop
+
+        return compiled_road_loop(make_control)
+    return interpreted_road_loop(make_control)
+
+
+def interpreted_road_loop(make_control: MakeControl) -> Loop:
+    """The loop in Python."""
+
+    def bound(model: mujoco.MjModel, data: mujoco.MjData, speeds: Any) -> Callable[[], None]:
+        control, memory = readable(make_control(model)), memory_of(model)
+        position, ctrl, rates = data.qpos, data.ctrl, np.asarray(speeds)
+        return lambda: act(control, memory, position, rates, ctrl)
+
+    return controlled_loop(bound)
 
 
 @dataclass(frozen=True, eq=False)

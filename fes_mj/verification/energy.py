@@ -9,8 +9,7 @@ from fes_mj.crosscheck.turn_case import Case
 from fes_mj.linkage.legs import ONE_LEG
 from fes_mj.simulation.bench import Energy, joint_drives
 from fes_mj.simulation.mjcf import SERVO
-from fes_mj.simulation.sensors import Sensors
-from fes_mj.simulation.stepping import recording_loop, run_loop
+from fes_mj.simulation.stepping import Sensors, recording_loop, run_loop
 from fes_mj.simulation.time_step import steps_per_turn
 
 

@@ -22,8 +22,7 @@ from fes_mj.linkage.design import Design, Linkage, Rider
 from fes_mj.linkage.segments import GRAVITY, Inertia
 from fes_mj.simulation.appearance import Spec
 from fes_mj.simulation.mjcf import AXIS, LOOP_SOLIMP, ModelOptions, Physics, add_body, build_mjcf, set_options
-from fes_mj.simulation.sensors import Sensors
-from fes_mj.simulation.stepping import recording_loop, run_loop
+from fes_mj.simulation.stepping import Sensors, recording_loop, run_loop
 
 WINDOWS = 2  # of the chain, as in the library's table of results
 CHAIN_TIME = 10.0  # s

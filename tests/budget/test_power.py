@@ -14,8 +14,8 @@ from fes_mj.linkage.joints import JOINTS
 from fes_mj.linkage.turning import turning
 from fes_mj.linkage.variables import replaced
 from fes_mj.moments.drive import POINTS, drive
+from fes_mj.moments.files import moments_of
 from fes_mj.moments.joint_moments import JointMoments
-from fes_mj.moments.samples import moments_of
 from fes_mj.moments.torque_velocity import TorqueVelocity, load_torque_velocity
 from fes_mj.statics.equilibrium import crank_moment
 from fes_mj.statics.turn import quasi_static

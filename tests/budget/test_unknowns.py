@@ -12,7 +12,7 @@ from fes_mj.common.units import RPM
 from fes_mj.linkage.assembly import joint_ranges
 from fes_mj.linkage.kinematics import FULL_TURN
 from fes_mj.linkage.variables import LENGTHS, component, replaced
-from fes_mj.moments.samples import sampled_coefficients
+from fes_mj.moments.files import sampled_coefficients
 from fes_mj.paper.identification import LENGTH_ROUNDING
 from fes_mj.paper.printed import SIX_BARS, table1
 from tests.linkage.test_design_file import written

@@ -5,9 +5,9 @@ import pytest
 
 import fes_mj
 from fes_mj.linkage.design_file import DESIGNS
+from fes_mj.moments.files import moments_of, sampled_coefficients, sampled_moments
 from fes_mj.moments.fourier import fourier
 from fes_mj.moments.joint_moments import GROUPS
-from fes_mj.moments.samples import moments_of, sampled_coefficients, sampled_moments
 from fes_mj.statics.turn import quasi_static
 
 ROUNDING = 0.5e-4  # N m, of the files

@@ -8,8 +8,7 @@ import pytest
 import fes_mj
 from fes_mj.optimization.evenness import RippleLimit, fluctuation
 from fes_mj.optimization.optimize import run_searches
-from fes_mj.riding.ride import Ride, balancing_slope
-from fes_mj.riding.ripple import steady_ripple
+from fes_mj.riding.ride import Ride, balancing_slope, steady_ripple
 from fes_mj.riding.trace import ride
 from fes_mj.statics.turn import quasi_static
 from tests.optimization.conftest import SIX_BARS, problem_of

@@ -8,8 +8,8 @@ import pytest
 
 from fes_mj.common.errors import InputError
 from fes_mj.common.reading import DATA
+from fes_mj.moments.files import sampled_coefficients
 from fes_mj.moments.joint_moments import GROUPS
-from fes_mj.moments.samples import sampled_coefficients
 from fes_mj.paper.evidence import functional, load_evidence, of_group
 from fes_mj.paper.reconstruction import (
     Hyperparameters,

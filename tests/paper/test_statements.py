@@ -7,9 +7,9 @@ import pytest
 
 import fes_mj
 from fes_mj.common.errors import InputError
+from fes_mj.moments.files import moments_of, sampled_coefficients
 from fes_mj.moments.fourier import fourier
 from fes_mj.moments.joint_moments import GROUPS
-from fes_mj.moments.samples import moments_of, sampled_coefficients
 from fes_mj.paper import statements
 from fes_mj.paper.evidence import load_evidence, of_group
 from fes_mj.paper.reconstruction import choose_hyperparameters, condition, draw

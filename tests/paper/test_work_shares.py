@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from fes_mj.moments.files import sampled_coefficients
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
-from fes_mj.moments.samples import sampled_coefficients
 from fes_mj.paper.evidence import functional, load_evidence
 from fes_mj.paper.work_shares import shares, work
 

@@ -16,8 +16,7 @@ from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.moments.torque_map import torque_map
 from fes_mj.moments.torque_velocity import load_torque_velocity
 from fes_mj.riding.leg_table import LegTable, leg_table
-from fes_mj.riding.ride import Ride, Road, balancing_slope
-from fes_mj.riding.ripple import steady_ripple
+from fes_mj.riding.ride import Ride, Road, balancing_slope, steady_ripple
 from fes_mj.riding.trace import DEFAULT_STEPS, Steps, ride as solved
 from fes_mj.statics.equilibrium import crank_moment
 

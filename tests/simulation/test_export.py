@@ -21,8 +21,7 @@ from fes_mj.moments.torque_map import torque_map
 from fes_mj.simulation.bench import joint_drives, simulate
 from fes_mj.simulation.export import mjcf_text, scene_text, sidecar_text
 from fes_mj.simulation.mjcf import ModelOptions, build_mjcf
-from fes_mj.simulation.sensors import Sensors
-from fes_mj.simulation.stepping import PRE_ROLL, drive_addresses
+from fes_mj.simulation.stepping import PRE_ROLL, Sensors, drive_addresses
 from fes_mj.simulation.time_step import steps_per_turn
 from fes_mj.simulation.variants import variant_model, variant_options
 from fes_mj.statics.turn import quasi_static

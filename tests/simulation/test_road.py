@@ -9,8 +9,7 @@ import pytest
 import fes_mj
 from fes_mj.moments.torque_velocity import load_torque_velocity
 from fes_mj.riding.ride import Ride, Road
-from fes_mj.simulation.road import ride_on_road
-from fes_mj.simulation.road_loop import interpreted_road_loop
+from fes_mj.simulation.road import interpreted_road_loop, ride_on_road
 from fes_mj.simulation.road_mjcf import build_road_mjcf
 
 HILL = replace(fes_mj.load_moments("p1p2"), torque_velocity=load_torque_velocity("hill"))

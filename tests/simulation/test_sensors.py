@@ -7,8 +7,7 @@ import fes_mj
 from fes_mj.linkage.joints import JOINTS
 from fes_mj.moments.torque_map import torque_map
 from fes_mj.simulation.mjcf import build_mjcf
-from fes_mj.simulation.sensors import Sensors
-from fes_mj.simulation.stepping import feedback_loop, run_loop
+from fes_mj.simulation.stepping import Sensors, feedback_loop, run_loop
 
 
 def test_speed_is_the_slope_of_the_angle(smooth_moments: fes_mj.JointMoments) -> None:

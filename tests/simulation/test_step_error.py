@@ -7,7 +7,7 @@ import pytest
 
 import fes_mj
 from fes_mj.crosscheck.turn_case import Case
-from fes_mj.simulation.step_error import predicted_errors
+from fes_mj.simulation.time_step import predicted_errors
 
 
 @pytest.mark.parametrize("name", ["trt", "r2", "d1", "d2"])
