@@ -1,5 +1,6 @@
 """Designs, moments and a study that many tests share."""
 
+import os
 import signal
 from pathlib import Path
 from typing import Any
@@ -18,9 +19,10 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 if hasattr(signal, "SIGHUP"):
     signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
-# The same examples in every run: a failure can be repeated. `--hypothesis-profile default` looks further.
-settings.register_profile("fes_mj", derandomize=True, deadline=None, max_examples=50)
-settings.load_profile("fes_mj")
+# The same examples in every run: a failure can be repeated; continuous integration has four times as many.
+settings.register_profile("fes_mj", derandomize=True, deadline=None, max_examples=25)
+settings.register_profile("ci", derandomize=True, deadline=None, max_examples=100)
+settings.load_profile("ci" if "CI" in os.environ else "fes_mj")
 
 
 @pytest.fixture(params=DESIGNS)

@@ -32,7 +32,7 @@ def _plain(text: str) -> str:
     [
         pytest.param("designer.md", marks=pytest.mark.long),
         "engineer.md",
-        "own_moments.md",
+        pytest.param("own_moments.md", marks=pytest.mark.process),
         "stimulation.md",
         pytest.param("reviewer.md", marks=pytest.mark.long),
     ],

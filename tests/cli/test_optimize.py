@@ -160,7 +160,10 @@ def found_with(path: Path) -> list[str]:
     "given",
     [
         [],
-        ["--group", "p1p3", "--speeds-of", "d2", "--start", "d2", "--caution", "1", "--knee-speed-limit", "170"],
+        pytest.param(
+            ["--group", "p1p3", "--speeds-of", "d2", "--start", "d2", "--caution", "1", "--knee-speed-limit", "170"],
+            marks=pytest.mark.long,
+        ),
         ["--problem", "it's a *problem*\x07.toml", "--moments", "-m.csv"],
         pytest.param(["--method", "nsga-ii", "--smooth"], marks=pytest.mark.long),
         pytest.param(["--riders", "population-p10"], marks=pytest.mark.long),

@@ -51,6 +51,7 @@ def test_reader_conforms(name: str, everything: Asked) -> None:
     assert all(row.ok for row in judged_rows), [row for row in judged_rows if not row.ok]
 
 
+@pytest.mark.process
 def test_mujoco_finds_the_same_in_another_process(asked: Asked) -> None:
     (row,) = rows("mujoco", *asked)
     assert row.ok

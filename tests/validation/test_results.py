@@ -80,6 +80,7 @@ def test_the_found_designs_have_the_power_they_are_listed_with() -> None:
         )
 
 
+@pytest.mark.long
 def test_the_page_on_the_time_step_has_todays_steps() -> None:
     rows = (RESULTS / "time_step.md").read_text(encoding="utf-8").split("## Steps a turn")[1]
     for name, files in (

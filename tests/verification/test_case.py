@@ -13,6 +13,7 @@ from fes_mj.verification.suite import FULL, verify
 MOST_RUNS = 12 + 6  # of the bench, and three rides with a probe of their start each
 
 
+@pytest.mark.long
 def test_a_full_verification_makes_few_runs(monkeypatch: pytest.MonkeyPatch) -> None:
     runs, run_loop = [], stepping.run_loop
 

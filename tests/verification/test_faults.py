@@ -23,6 +23,7 @@ def test_everything_holds_without_a_fault(baseline: dict[str, bool]) -> None:
     assert [name for name, ok in baseline.items() if not ok] == []
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("fault", faults(), ids=lambda fault: fault.name)
 def test_the_guard_notices(fault: Fault, case: VerificationCase, baseline: dict[str, bool]) -> None:
     assert fault.applies(case)

@@ -28,6 +28,7 @@ def test_both_axes_converge_to_statics(name: str) -> None:
     assert result.steps[-1].gap < 2e-7
 
 
+@pytest.mark.long
 def test_the_uncertainty_covers_the_true_error_of_the_default_step() -> None:
     for name in ("trt", "r1", "d2"):
         result = refine(case_of(name))
@@ -43,6 +44,7 @@ def test_soft_loops_converge_to_the_wrong_answer(monkeypatch: pytest.MonkeyPatch
     assert result.softness_floor > 0.5
 
 
+@pytest.mark.long
 def test_the_recommended_loops_lie_on_the_floor() -> None:
     result = refine(case_of("d1"))
     assert abs(result.softness_floor) < 1e-3  # ten times stiffer gains nothing

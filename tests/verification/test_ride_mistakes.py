@@ -14,14 +14,13 @@ CLEARLY = 3  # times its limit is a guard's value at least
 FAULTS = [fault for fault in faults() if fault.ride_steps]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "source",
     [
         "d1",
-        *(
-            pytest.param(source, marks=pytest.mark.long)
-            for source in ("trt", "r1", "r2", "d2", str(ROOT / "results" / "optimization" / "r2-caution-1.toml"))
-        ),
+        *("trt", "r1", "r2", "d2"),
+        str(ROOT / "results" / "optimization" / "r2-caution-1.toml"),
     ],
 )
 def test_the_guard_notices_by_far(source: str) -> None:

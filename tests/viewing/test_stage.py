@@ -33,7 +33,9 @@ def test_points_are_drawn_where_mujoco_draws_them(legs: int) -> None:
     assert (columns.mean(), rows.mean()) == pytest.approx(pixel, abs=12)
 
 
-@pytest.mark.parametrize("name", DESIGNS)
+@pytest.mark.parametrize(
+    "name", ["trt", "d1", *(pytest.param(name, marks=pytest.mark.long) for name in ("r1", "r2", "d2"))]
+)
 def test_nothing_is_cut(name: str) -> None:
     """The outermost pixels of what is drawn are those of an empty picture, all over the turn."""
     use_offscreen_gl()
