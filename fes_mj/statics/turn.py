@@ -219,8 +219,8 @@ class LegTurns:
     @property
     def power(self) -> FloatArray:
         """Crank power of all legs over the right crank's angle, W, shape (n,)."""
-        each = self.turns * (self.legs // len(self.turns))
-        shifted = [delayed(turn.power, leg.lag) for turn, leg in zip(each, LEGS[self.legs], strict=True)]
+        of_legs = self.turns * (self.legs // len(self.turns))
+        shifted = [delayed(turn.power, leg.lag) for turn, leg in zip(of_legs, LEGS[self.legs], strict=True)]
         return np.asarray(np.sum(shifted, axis=0))
 
     def ratio(self, other: "LegTurns") -> tuple[float, float | None]:

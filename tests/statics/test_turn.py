@@ -1,15 +1,20 @@
 """Free-body equilibrium against virtual work, the paper's own equations and the definition of power."""
 
+import math
+
 import numpy as np
 import pytest
 
+import fes_mj
 from fes_mj import quasi_static
 from fes_mj.common.errors import InputError
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.design_file import load_design
+from fes_mj.linkage.kinematics import solve
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.statics.equilibrium import equilibrium, virtual_work
+from fes_mj.statics.turn import LegTurns, ratio_sd
 
 
 def test_equilibrium_is_virtual_work(design: Design, moments: JointMoments) -> None:
@@ -82,3 +87,36 @@ def test_a_batch_of_designs_is_refused_with_the_name_of_what_takes_it(moments: J
 def test_a_crank_that_does_not_turn_is_refused(moments: JointMoments, cadence: float) -> None:
     with pytest.raises(InputError, match="d1: cadence is"):
         quasi_static(load_design("d1"), moments, cadence)
+
+
+def test_two_legs_are_one_leg_and_itself_half_a_turn_later(smooth_moments: fes_mj.JointMoments) -> None:
+    design = fes_mj.load_design("d1")
+    one = quasi_static(design, smooth_moments)
+    both = LegTurns.solve(design, smooth_moments, one.cadence, legs=2)
+    motion = solve(design, one.crank_angle - np.pi)
+    later = virtual_work(motion, one.torque.along(motion, one.cadence))
+    np.testing.assert_allclose(both.power, one.power + later * one.cadence, atol=1e-9)
+    assert both.power_mean == pytest.approx(one.power_mean, rel=1e-12)
+    assert both.summary()["work_per_turn_J"] == pytest.approx(one.work_per_turn, rel=1e-12)
+
+
+def test_legs_with_moments_of_their_own() -> None:
+    """The mean is over the legs; the errors of two recordings are independent."""
+    design, right, left = fes_mj.load_design("r1"), fes_mj.load_moments("p1p2"), fes_mj.load_moments("p1p3")
+    one, other = quasi_static(design, right), quasi_static(design, left)
+    both = LegTurns.solve(design, fes_mj.load_moments("p1p2", left="p1p3"), one.cadence, legs=2)
+    assert both.power_mean == pytest.approx((one.power_mean + other.power_mean) / 2, rel=1e-12)
+    assert both.power_sd == pytest.approx(math.hypot(one.power_sd, other.power_sd) / 2, rel=1e-12)
+    half = len(one.power) // 2
+    np.testing.assert_allclose(both.power, one.power + np.concatenate([other.power[half:], other.power[:half]]))
+
+
+def test_the_ratio_of_designs_under_the_same_moments(moments: fes_mj.JointMoments) -> None:
+    """As ratio_sd for one leg; what is the same is once itself without error."""
+    trt, d1 = (
+        LegTurns.solve(design, moments, design.linkage.cadence) for design in map(fes_mj.load_design, ("trt", "d1"))
+    )
+    ratio, deviation = d1.ratio(trt)
+    assert ratio == pytest.approx(d1.first.power_mean / trt.first.power_mean, rel=1e-12)
+    assert deviation == pytest.approx(ratio_sd(d1.first, trt.first), rel=1e-12)
+    assert d1.ratio(d1) == (1.0, 0.0)
