@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 from cyclopts import Group, Parameter
@@ -60,14 +60,15 @@ def simulate(
     require_writable(render, "the video", ".mp4", inputs)
     if speed is not None:
         _check_speed(speed, loaded.cadence)
-    from fes_mj.crosscheck.turn_case import Case
+    from fes_mj.crosscheck.turn_case import Case, turn_summary
 
     case = Case(*loaded, timestep, turns, options.legs)
     stem = f"{case.design.name}-{case.moments.name}"
     paths = require_results(out, stem, ("json", "csv", "xml"), inputs) if out else {}
+    content = turn_summary(case) | summary(error_budget(*case.statics.turns)) if paths or options.json else {}
     if paths:
-        _write(case, paths)
-    options.show(lambda: _content(case), lambda: _print(case, options.verbose))
+        write_results(dict(zip(paths.values(), (json_text(content), *_texts(case)), strict=True)))
+    options.show(lambda: content, lambda: _print(case, options.verbose))
     if render:
         from fes_mj.viewing.render import render_video
 
@@ -78,13 +79,6 @@ def simulate(
 
         viewer.show(*loaded)
     return 0 if case.agrees else 1
-
-
-def _content(case: Case) -> dict[str, Any]:
-    """The result as JSON names and units it."""
-    from fes_mj.crosscheck.turn_case import turn_summary
-
-    return turn_summary(case) | summary(error_budget(*case.statics.turns))
 
 
 def _check_speed(speed: float, cadence: float) -> None:
@@ -130,12 +124,11 @@ def _print(case: Case, verbose: bool) -> None:
     tables.conclude_checks("Dynamic and static", case.checks, f": mean power differs by {case.difference_text}")
 
 
-def _write(case: Case, paths: dict[str, Path]) -> None:
-    """Write the result, the cycle and the model."""
+def _texts(case: Case) -> tuple[str, str]:
+    """The cycle and the model."""
     from fes_mj.crosscheck.turn_case import cycle_csv
     from fes_mj.simulation.export import mjcf_text
     from fes_mj.simulation.mjcf import build_mjcf
 
     spec = build_mjcf(case.design, cadence=case.cadence, timestep=case.simulation.timestep, legs=case.legs)
-    texts = {"json": json_text(_content(case)), "csv": cycle_csv(case), "xml": mjcf_text(spec)}
-    write_results({path: texts[suffix] for suffix, path in paths.items()})
+    return cycle_csv(case), mjcf_text(spec)

@@ -8,6 +8,7 @@ from fes_mj.cli import tables
 from fes_mj.cli.options import DesignName, Flag, Loaded, RunOptions
 from fes_mj.common.console import print_table, say
 from fes_mj.linkage.turning import CRANK_ZERO, FROM_TOP, turning
+from fes_mj.moments.uncertainty import with_sd
 from fes_mj.statics.joint_forces import JointForces
 from fes_mj.statics.turn import LegTurns, QuasiStatic, quasi_static
 
@@ -71,14 +72,14 @@ def _print(loaded: Loaded, result: LegTurns, curves: bool, verbose: bool) -> Non
 
 def _print_comparison(results: list[LegTurns]) -> None:
     """One column a design."""
-    summaries = [result.summary() for result in results]
+    summaries, ratios = [result.summary() for result in results], [result.ratio(results[0]) for result in results]
     rows = [
         ("cadence, rpm", *(f"{content['cadence_rpm']:.1f}" for content in summaries)),
         (
             "mean crank power of one leg, W",
             *(tables.with_error(result.power_mean, result.power_sd) for result in results),
         ),
-        ("  per the first design's", *(_ratio(*result.ratio(results[0])) for result in results)),
+        ("  per the first design's", *(with_sd(ratio, deviation or None, 3) for ratio, deviation in ratios)),
     ]
     columns = [[*tables.power_rows(result.first)[1:], *tables.turn_rows(result.summary())] for result in results]
     rows += [(row[0][0], *(value for _, value in row)) for row in zip(*columns, strict=True)]
@@ -86,10 +87,6 @@ def _print_comparison(results: list[LegTurns]) -> None:
     print_table(f"{results[0].first.moments.name}, quasi-static", ("", *names), rows)
     for result in results:
         tables.print_notes(result.first, f"{result.first.design.name}: ")
-
-
-def _ratio(ratio: float, deviation: float | None) -> str:
-    return f"{ratio:.3f}" + (f" +- {tables.or_dash(deviation, '.3f')}" if deviation else "")
 
 
 def _curves(result: QuasiStatic) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""The simulation's inner loop in machine code (numba): the torque map and mj_step by its C name, without Python.
+"""The inner loops of bench and road in machine code (numba), with MuJoCo's steps by their C names, without Python.
 
 Importing this raises MissingPartError without numba.
 """
@@ -14,9 +14,10 @@ import numpy as np
 
 from fes_mj.common.arrays import FloatArray
 from fes_mj.common.errors import require_extra
-from fes_mj.common.machine_code import machine_code
+from fes_mj.common.machine_code import kept_machine_code, machine_code, sources
 from fes_mj.linkage.joints import JOINTS
 from fes_mj.moments.torque_map import TorqueMap, scalar_map
+from fes_mj.simulation.road_control import Memory, RoadControl, act, memory_of
 from fes_mj.simulation.stepping import FORCE_EVERY, Loop, Records, drive_addresses
 
 _numba: Any = require_extra("optimize", "numba", "llvmlite")
@@ -160,3 +161,26 @@ def _map_advance() -> Advance:
             record(row, fields, sensor_rows, force_rows)
 
     return advance
+
+
+def compiled_road_loop(make_control: Callable[[mujoco.MjModel], RoadControl]) -> Loop:
+    """The loop of a ride under its control; its machine code is kept on disk."""
+    return compiled_controlled_loop(_road_advance, lambda model: (make_control(model), memory_of(model)), forces=False)
+
+
+@kept_machine_code
+def _road_advance(
+    half: float,
+    pointers: tuple[int, int],
+    arguments: tuple[RoadControl, Memory],
+    fields: Fields,
+    sensor_rows: Any,
+    force_rows: Any,
+    version: int = sources(),
+) -> None:
+    control, memory = arguments
+    for row in range(len(sensor_rows) - 1):
+        lead(half, fields)
+        act(control, memory, fields.qpos, fields.lead, fields.ctrl)
+        step(pointers, fields)
+        record(row, fields, sensor_rows, force_rows)

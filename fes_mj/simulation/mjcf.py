@@ -6,6 +6,7 @@ phi_h, `knee` is phi_k, `crank` is theta_2.
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -117,7 +118,8 @@ def build_mjcf(
     _set_defaults(spec, physics.loop_solref or LOOP_SOLREF)
     # one fixed root: some readers drop all bodies but the first
     root = spec.worldbody.add_body(name="tricycle", childclass="tricycle")
-    masses = {body: _scaled(part, physics.mass_scale) for body, part in inertias(design).items()}
+    scale = physics.mass_scale
+    masses = {body: Inertia(scale * m, centre, scale * i) for body, (m, centre, i) in inertias(design).items()}
     masses["crank"] = combine(*(_turned(masses["crank"], -leg.lag) for leg in pair))
     crank = add_body(root, "crank", position(design.linkage.crank_centre), masses["crank"])
     crank.add_site(name="crank_torque")
@@ -130,10 +132,13 @@ def build_mjcf(
         appearance.draw(spec, design, pair)
     if options.driven:
         add_motors(spec, pair)
-    if held:
-        _hold_cadence(spec, options.compatible)
+    if held and options.compatible:  # its integrator bears no servo
+        spec.joint("crank").armature = FLYWHEEL
+    elif held:
+        servo = spec.add_actuator(name=SERVO, trntype=mujoco.mjtTrn.mjTRN_JOINT, target="crank")
+        servo.set_to_velocity(kv=SERVO_GAIN)
     _add_sensors(spec)
-    _add_keyframe(spec, state)
+    add_keyframe(spec, state, [cadence if motor.name == SERVO else 0.0 for motor in spec.actuators])
     return spec
 
 
@@ -152,10 +157,6 @@ def _start_state(design: Design, leg: Leg, cadence: float) -> dict[str, tuple[fl
     """Angle (rad) and speed (rad/s) of every joint of a leg but the crank, at crank angle 0."""
     joints = joint_motion(kinematics.solve(design, np.array([-leg.lag])))
     return {joint: (float(angle[0]), cadence * float(rate[0])) for joint, (angle, rate, _) in joints.items()}
-
-
-def _scaled(inertia: Inertia, scale: float) -> Inertia:
-    return Inertia(scale * inertia.mass, inertia.centre, scale * inertia.moment)
 
 
 def _turned(inertia: Inertia, angle: float) -> Inertia:
@@ -273,15 +274,6 @@ def add_motors(spec: Spec, legs: tuple[Leg, ...]) -> None:
             spec.add_actuator(name=joint, trntype=mujoco.mjtTrn.mjTRN_JOINT, target=joint).set_to_motor()
 
 
-def _hold_cadence(spec: Spec, compatible: bool) -> None:
-    """A velocity servo on the crank, or a flywheel where the integrator does not bear one."""
-    if not compatible:
-        servo = spec.add_actuator(name=SERVO, trntype=mujoco.mjtTrn.mjTRN_JOINT, target="crank")
-        servo.set_to_velocity(kv=SERVO_GAIN)
-    else:
-        spec.joint("crank").armature = FLYWHEEL
-
-
 def _add_sensors(spec: Spec) -> None:
     """The torque between frame and crank, angle and speed of every joint."""
     kinds, objects, name = mujoco.mjtSensor, mujoco.mjtObj, "crank_torque"
@@ -291,8 +283,8 @@ def _add_sensors(spec: Spec) -> None:
             spec.add_sensor(name=f"{joint}_{quantity}", type=kind, objtype=objects.mjOBJ_JOINT, objname=joint)
 
 
-def _add_keyframe(spec: Spec, state: dict[str, tuple[float, float]]) -> None:
-    """Exact position and velocity at crank angle 0, the servo at its cadence and the joint motors idle."""
+def add_keyframe(spec: Spec, state: dict[str, tuple[float, float]], controls: Sequence[float] = ()) -> None:
+    """Position (rad, m) and speed of every joint at the start, and what its actuators are given."""
     try:
         model = spec.compile()
     except ValueError as error:
@@ -301,5 +293,4 @@ def _add_keyframe(spec: Spec, state: dict[str, tuple[float, float]]) -> None:
     for joint, (angle, speed) in state.items():
         address = model.joint(joint).qposadr[0]
         qpos[address], qvel[address] = angle, speed
-    ctrl = [state["crank"][1] if actuator.name == SERVO else 0.0 for actuator in spec.actuators]
-    spec.add_key(name="start", qpos=qpos, qvel=qvel, ctrl=ctrl)
+    spec.add_key(name="start", qpos=qpos, qvel=qvel, ctrl=controls)

@@ -27,7 +27,7 @@ MakeControl: TypeAlias = Callable[[mujoco.MjModel], RoadControl]  # the control 
 def road_loop(make_control: MakeControl) -> Loop:
     """The loop that steps a ride under a control: in machine code where numba is installed, elsewhere in Python."""
     if COMPILED:
-        from fes_mj.simulation.road_compiled import compiled_road_loop
+        from fes_mj.simulation.compiled import compiled_road_loop
 
         return compiled_road_loop(make_control)
     return interpreted_road_loop(make_control)
@@ -130,21 +130,16 @@ def ride_on_road(
     spec = build_road_mjcf(ride, timestep, drawn=False)
     edit(spec)
     model, loop = spec.compile(), make_loop(control or partial(road_control, ride))
-    start_energy = _keyframe_energy(model)
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    start_energy = sum(energy(model, data))
     _start_half_a_step_early(model, ride)
     if ride.launch:
         probe = Sensors(model, run_loop(model, loop, PRE_ROLL, pre_roll=0).sensors)
         gain = {name: float(np.diff(probe[f"{name}_speed"][PRE_ROLL // 2 : -1]).mean()) for name in (ROAD, "crank")}
         _start_half_a_step_early(model, ride, {name: change / timestep for name, change in gain.items()})
-    return record(
-        ride, timestep, model, start_energy, run_loop(model, loop, round(ride.duration / timestep) + 1, pre_roll=0)
-    )
-
-
-def _keyframe_energy(model: mujoco.MjModel) -> float:
-    data = mujoco.MjData(model)
-    mujoco.mj_resetDataKeyframe(model, data, 0)
-    return sum(energy(model, data))
+    run = run_loop(model, loop, round(ride.duration / timestep) + 1, pre_roll=0)
+    return record(ride, timestep, model, start_energy, run)
 
 
 def _start_half_a_step_early(model: mujoco.MjModel, ride: Ride, gain: dict[str, float] | None = None) -> None:

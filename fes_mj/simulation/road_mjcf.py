@@ -18,6 +18,7 @@ from fes_mj.simulation.mjcf import (
     LOOP_SOLREF,
     NO_MINUS,
     ModelOptions,
+    add_keyframe,
     add_motors,
     build_mjcf,
     joint_motion,
@@ -69,7 +70,8 @@ def build_road_mjcf(
     if driven:
         add_motors(spec, TWO_LEGS)
     _add_sensors(spec, ride, driven, compatible)
-    _replace_keyframe(spec, ride)
+    spec.delete(spec.key("start"))
+    add_keyframe(spec, start_state(ride))
     return spec
 
 
@@ -82,11 +84,8 @@ def _add_drivetrain(spec: Spec, ride: Ride) -> None:
         gear.name1, gear.data[0] = DRIVETRAIN, NO_MINUS - ride.start
         gear.solref, gear.solimp = LOOP_SOLREF, LOOP_SOLIMP
     else:
-        tendon.limited, tendon.range, tendon.margin = (
-            mujoco.mjtLimited.mjLIMITED_TRUE,
-            (NO_MINUS - ride.start, _FAR),
-            TOUCH,
-        )
+        tendon.limited, tendon.margin = mujoco.mjtLimited.mjLIMITED_TRUE, TOUCH
+        tendon.range = NO_MINUS - ride.start, _FAR
         tendon.solref_limit, tendon.solimp_limit = LOOP_SOLREF, LOOP_SOLIMP
 
 
@@ -102,17 +101,6 @@ def _add_sensors(spec: Spec, ride: Ride, driven: bool, compatible: bool) -> None
         spec.add_sensor(
             name=DRIVETRAIN, type=kinds.mjSENS_TENDONLIMITFRC, objtype=objects.mjOBJ_TENDON, objname=DRIVETRAIN
         )
-
-
-def _replace_keyframe(spec: Spec, ride: Ride) -> None:
-    """Exact position and velocity at the start of the ride."""
-    spec.delete(spec.key("start"))
-    model = spec.compile()
-    qpos, qvel = np.zeros(model.nq), np.zeros(model.nv)
-    for joint, (angle, speed) in start_state(ride).items():
-        address = model.joint(joint).qposadr[0]
-        qpos[address], qvel[address] = angle, speed
-    spec.add_key(name="start", qpos=qpos, qvel=qvel)
 
 
 def start_state(

@@ -45,7 +45,6 @@ class Sweep(Brief):
     def manifest(self) -> dict[str, Any]:
         """All that the results depend on, as JSON, of long arrays a digest. The order of the grid is part of it."""
         study = self.study
-        moments = {name: digest(moments) for name, moments in study.moments.items()}
         return {
             "fes-mj": version("fes-mj"),
             "analysis": study.analysis,
@@ -55,7 +54,7 @@ class Sweep(Brief):
             "grid": study.grid,
             "sample": {name: digest(values) for name, values in study.sample.items()},
             "designs": {name: design_toml(design) for name, design in study.designs.items()},
-            "moments": moments,
+            "moments": {name: digest(moments) for name, moments in study.moments.items()},
         }
 
     def schema(self, chunk: int) -> Any:
@@ -82,40 +81,37 @@ class Sweep(Brief):
             return None
         return table if np.array_equal(table["point"].to_numpy(), numbers) else None
 
-    def tables(self) -> Iterator[Any]:
-        """The tables of the finished chunks, in their order."""
-        there = (self.table(chunk) for chunk in range(self.study.chunks) if self.path(chunk).exists())
-        return (table for table in there if table is not None)
+    def tables(self) -> Iterator[tuple[int, Any]]:
+        """The finished chunks, whose results are there and sound, in their order, each with its table."""
+        for chunk in range(self.study.chunks):
+            if self.path(chunk).exists() and (table := self.table(chunk)) is not None:
+                yield chunk, table
 
     def finished(self) -> list[int]:
-        """Chunks whose results are there and sound."""
-        there = (chunk for chunk in range(self.study.chunks) if self.path(chunk).exists())
-        return [chunk for chunk in there if self.table(chunk) is not None]
+        """The finished chunks."""
+        return [chunk for chunk, _ in self.tables()]
 
     def claim(self) -> None:
         """Make the folder this study's, or check that it is; remove what a kill left. InputError if it is another's."""
         make_folder(self.folder, "the results")
         manifest, ours = self.folder / MANIFEST, self.manifest
         if manifest.exists():
-            self._require_same(read_json(manifest, "record of the study"))
+            theirs = read_json(manifest, "record of the study")
+            different = [
+                key if ours.get(key) != theirs.get(key) else f"order of {key}"
+                for key in ours | theirs
+                if json.dumps(ours.get(key)) != json.dumps(theirs.get(key))
+            ]
+            if different:
+                raise InputError(
+                    f"{self.folder}: this folder holds the results of another study (different: "
+                    f"{', '.join(different)}); name another folder"
+                )
         elif any(not _is_nobodys(path) for path in self.folder.iterdir()):
             raise InputError(f"{self.folder}: this folder is not empty and holds no study; name a new one")
         else:
             write_text(manifest, json.dumps(ours, indent=1))
         remove_leftovers(self.folder)
-
-    def _require_same(self, theirs: dict[str, Any]) -> None:
-        ours = self.manifest
-        different = [
-            key if ours.get(key) != theirs.get(key) else f"order of {key}"
-            for key in ours | theirs
-            if json.dumps(ours.get(key)) != json.dumps(theirs.get(key))
-        ]
-        if different:
-            raise InputError(
-                f"{self.folder}: this folder holds the results of another study (different: {', '.join(different)}); "
-                "name another folder"
-            )
 
     def run(
         self,
@@ -145,22 +141,21 @@ class Sweep(Brief):
     def read(self, columns: Sequence[str] | None = None) -> Any:
         """All finished results, or these of their columns, as one pyarrow table, by point."""
         arrow = require_extra("optimize", "pyarrow")
-        parts = (
-            table.select(columns or table.column_names) for table in [self.schema(0).empty_table(), *self.tables()]
-        )
+        tables = [self.schema(0).empty_table(), *(table for _, table in self.tables())]
+        parts = [table.select(columns or table.column_names) for table in tables]
         return arrow.concat_tables(parts).replace_schema_metadata()
 
     def write_csv(self, path: Path) -> None:
         """All finished results as a CSV file, empty where something is not known."""
         csv = require_extra("optimize", "pyarrow.csv")
         with replacing(path) as temporary, csv.CSVWriter(temporary, self.schema(0)) as writer:
-            for table in self.tables():
+            for _, table in self.tables():
                 writer.write_table(table)
 
     def summary(self) -> dict[str, Any]:
         """Numbers of points, and the TOP ones with the most mean crank power."""
         points, turning, top = 0, 0, []
-        for table in self.tables():
+        for _, table in self.tables():
             points, turning = points + table.num_rows, turning + int(np.sum(table["turns"].to_numpy()))
             order = np.argsort(-table["power_mean_W"].to_numpy(), kind="stable")[:TOP]  # NaN, for null, comes last
             top += [row for row in table.take(order).to_pylist() if row["power_mean_W"] is not None]
