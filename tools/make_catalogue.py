@@ -12,9 +12,9 @@ from fes_mj.common.reading import DATA
 from fes_mj.common.writing import replacing, write_text
 from fes_mj.linkage.assembly import joint_ranges
 from fes_mj.linkage.design_file import design_toml, load_design
-from fes_mj.linkage.variables import LENGTHS, VARIABLES
+from fes_mj.linkage.variables import LENGTHS, VARIABLES, lengths, with_lengths
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
-from fes_mj.paper.identification import LENGTH_ROUNDING, identify, inside_rounding, rounded
+from fes_mj.paper.identification import LENGTH_ROUNDING, identify, inside_rounding
 from fes_mj.paper.printed import SIX_BARS, table1
 
 FOLDER = DATA / "designs" / "identified"
@@ -39,7 +39,7 @@ def main() -> None:
         result = identify(load_design(name, "printed"), table1()[name])
         if not result.feasible:
             raise SystemExit(f"{name}: no dimensions inside the rounding of Table 2 satisfy Table 1")
-        design = rounded(result.design)
+        design = with_lengths(result.design, np.round(lengths(result.design), DIGITS))
         ranges = joint_ranges(design)
         comment = (
             f"{name.upper()} of Lanese et al. (2022), identified: inside the rounding of Table 2, closest to it,\n"

@@ -1,13 +1,31 @@
 """Tables and figures with the titles, columns and notes of data/captions.toml."""
 
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Callable, Iterable, Sequence
+from functools import wraps
+from typing import Any, ParamSpec, TypeAlias
 
 from fes_mj.common.markdown import Table
 from fes_mj.common.reading import DATA, Section, read_toml
 
+Arguments = ParamSpec("Arguments")
+Rows: TypeAlias = Iterable[tuple[Any, ...]]
+Value: TypeAlias = Sequence[str] | str
 
-def captioned(name: str, rows: list[tuple[Any, ...]], **values: Sequence[str] | str) -> Table:
+
+def table(name: str, **values: Value) -> Callable[[Callable[Arguments, Rows]], Callable[Arguments, Table]]:
+    """Decorator of a function that yields rows: it returns them as the table of this name; otherwise as `captioned`."""
+
+    def of(rows: Callable[Arguments, Rows]) -> Callable[Arguments, Table]:
+        @wraps(rows)
+        def made(*args: Arguments.args, **kwargs: Arguments.kwargs) -> Table:
+            return captioned(name, rows(*args, **kwargs), **values)
+
+        return made
+
+    return of
+
+
+def captioned(name: str, rows: Rows, **values: Value) -> Table:
     """The table of this name. values: texts that its title, note or column names have in braces.
 
     A column with a list in its braces is repeated for each.
@@ -19,7 +37,7 @@ def captioned(name: str, rows: list[tuple[Any, ...]], **values: Sequence[str] | 
         for value in values[key] if key else [""]:
             columns[title.format(**{key: value})] = form
     texts = {key: value for key, value in values.items() if isinstance(value, str)}
-    return Table(caption["title"], columns, rows, caption.get("note", "").format(**texts))
+    return Table(caption["title"], columns, [*rows], caption.get("note", "").format(**texts))
 
 
 def figure_section(name: str) -> str:

@@ -1,7 +1,8 @@
 """The page on the one error budget: what each unknown contributes, and how probable the paper's gains are."""
 
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 
@@ -9,11 +10,10 @@ from fes_mj.budget.budget import ErrorBudget, Share, Spread, error_budget, share
 from fes_mj.budget.power import UncertainPower
 from fes_mj.budget.unknowns import LAG, SPEED, priors
 from fes_mj.common.arrays import FloatArray
-from fes_mj.common.markdown import Table
 from fes_mj.linkage.design_file import DESIGNS
 from fes_mj.moments.joint_moments import GROUPS
 from fes_mj.moments.uncertainty import with_sd
-from fes_mj.paper.captions import captioned
+from fes_mj.paper.captions import Rows, table
 from fes_mj.paper.printed import SIX_BARS
 from fes_mj.statics.turn import QuasiStatic
 
@@ -27,6 +27,7 @@ CASES = {
 }
 FREE, FULL = (next(iter(CASES)), [*CASES][-1])
 GAINS = (1.25, 1.5, 2.0)  # power per the TRT's
+UNKNOWNS = [*priors()]  # the last draws nothing
 STEPS = len(DESIGNS) * len(GROUPS)  # how often `draw_all` calls `done`
 
 
@@ -62,39 +63,34 @@ def _drawn(result: QuasiStatic) -> Drawn:
     return Drawn(budget, powers, blame)
 
 
-def prior_table() -> Table:
+@table("priors")
+def prior_table() -> Rows:
     """What is drawn, and where it comes from."""
-    return captioned("priors", [(name, row["prior"], row["source"]) for name, row in priors().items()])
+    return [(name, row["prior"], row["source"]) for name, row in priors().items()]
 
 
-def contribution_table(budgets: Budgets) -> Table:
+@table("contributions", unknown=UNKNOWNS, case=[*CASES])
+def contribution_table(budgets: Budgets) -> Rows:
     """Standard deviation by each unknown alone, and mean and standard deviation of all together in each case."""
-    rows = []
     for (name, group), drawn in budgets.items():
         spreads = {case: Spread.of(powers) for case, powers in drawn.powers.items()}
         turning = 100 * (1 - spreads[FULL].failed / (DRAWS * TIMES))
         cells = [with_sd(spread.mean, spread.sd, 1) for spread in spreads.values()]
-        rows.append((name.upper(), group, *drawn.budget.by.values(), *cells, turning))
-    return captioned("contributions", rows, unknown=[*priors()], case=[*CASES])
+        yield name.upper(), group, *drawn.budget.by.values(), *cells, turning
 
 
-def share_table(budgets: Budgets) -> Table:
+@table("blame", unknown=UNKNOWNS[:-1])
+def share_table(budgets: Budgets) -> Rows:
     """Sobol's shares of the variance, of first and total order."""
-    rows: list[tuple[Any, ...]] = []
     for (name, group), drawn in budgets.items():
         for case, blame in drawn.shares.items():
-            cells = (_percent(blame[unknown]) if unknown in blame else None for unknown in _drawable())
+            cells = (_percent(blame[unknown]) if unknown in blame else None for unknown in UNKNOWNS[:-1])
             largest = max(share.total_error for share in blame.values())
-            rows.append((name.upper(), group, case, *cells, 100 * largest))
-    return captioned("blame", rows, unknown=_drawable())
+            yield name.upper(), group, case, *cells, 100 * largest
 
 
 def _percent(share: Share) -> str:
     return f"{max(0.0, 100 * share.first):.0f} / {100 * share.total:.0f}"
-
-
-def _drawable() -> list[str]:
-    return [*priors()][:-1]
 
 
 def ratios(budgets: Budgets, name: str, group: str, case: str, base: str = "trt") -> FloatArray:
@@ -102,26 +98,19 @@ def ratios(budgets: Budgets, name: str, group: str, case: str, base: str = "trt"
     return np.asarray(budgets[name, group].powers[case] / budgets[base, group].powers[case])
 
 
-def probability_table(budgets: Budgets) -> Table:
+@table("probability", gain=[f"{100 * (gain - 1):.0f}" for gain in GAINS])
+def probability_table(budgets: Budgets) -> Rows:
     """How probably each six-bar beats the TRT by so much; what does not turn beats nothing."""
-    rows = []
-    for name in SIX_BARS:
-        for group in GROUPS:
-            for case in CASES:
-                ratio = ratios(budgets, name, group, case)
-                spread = Spread.of(ratio)
-                chances = (100 * float(np.mean(ratio > gain)) for gain in GAINS)
-                rows.append((name.upper(), group, case, with_sd(spread.mean, spread.sd), *chances))
-    return captioned("probability", rows, gain=[f"{100 * (gain - 1):.0f}" for gain in GAINS])
+    for name, group, case in product(SIX_BARS, GROUPS, CASES):
+        ratio = ratios(budgets, name, group, case)
+        spread = Spread.of(ratio)
+        chances = (100 * float(np.mean(ratio > gain)) for gain in GAINS)
+        yield name.upper(), group, case, with_sd(spread.mean, spread.sd), *chances
 
 
-def better_table(budgets: Budgets) -> Table:
+@table("better")
+def better_table(budgets: Budgets) -> Rows:
     """How probably D1, the paper's choice, delivers more than each other six-bar."""
-    rows = []
-    for group in GROUPS:
-        for case in CASES:
-            chances = (
-                100 * float(np.mean(ratios(budgets, "d1", group, case, other) > 1)) for other in ("r1", "r2", "d2")
-            )
-            rows.append((group, case, *chances))
-    return captioned("better", rows)
+    for group, case in product(GROUPS, CASES):
+        others = (ratios(budgets, "d1", group, case, other) for other in ("r1", "r2", "d2"))
+        yield group, case, *(100 * float(np.mean(ratio > 1)) for ratio in others)

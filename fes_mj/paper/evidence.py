@@ -82,30 +82,27 @@ def _row(table: Section, sources: dict[str, str]) -> Evidence:
     if quantity == "moment":
         table.choice("joint", JOINTS)
         table.choice("direction", tuple(DIRECTIONS))
-    needed = {"moment": "angle_deg", "crank_power": "leg_m"}.get(quantity)
-    if needed:
-        table.require([needed], f"a {quantity} needs it")
-    if needed == "angle_deg":
-        table.number(needed, SMALLEST_ERROR, LARGEST_NUMBER, positive)
-    if needed == "leg_m":
-        table.number(needed, SHORTEST_LEG, LONGEST_LEG, f"from {SHORTEST_LEG} to {LONGEST_LEG} m: the TRT must close")
+        table.require(["angle_deg"], "a moment needs it")
+        table.number("angle_deg", SMALLEST_ERROR, LARGEST_NUMBER, positive)
+    if quantity == "crank_power":
+        table.require(["leg_m"], "a crank_power needs it")
+        table.number("leg_m", SHORTEST_LEG, LONGEST_LEG, f"from {SHORTEST_LEG} to {LONGEST_LEG} m: the TRT must close")
     return Evidence(**table.content)
 
 
-def functional(row: Evidence) -> tuple[FloatArray, float, float]:
-    """The row as a linear measurement: weights on the Fourier coefficients, shape (98,), value, error."""
+def functional(row: Evidence) -> FloatArray:
+    """The row as a linear measurement: its weights on the Fourier coefficients, shape (98,)."""
     if row.quantity == "power":
         design = load_design(row.design)
-        weights = power_weights(kinematics.solve(design, _ANGLES), design.linkage.cadence, PAPER_TRICYCLE)
-        return weights, row.value, row.error
+        return power_weights(kinematics.solve(design, _ANGLES), design.linkage.cadence, PAPER_TRICYCLE)
     if row.quantity == "moment":
         angle = math.radians(row.angle_deg)
         features = fourier(PAPER_TRICYCLE.source_angle(row.joint, angle, DIRECTIONS[row.direction]))
-        return np.concatenate([features * (joint == row.joint) for joint in JOINTS]), row.value, row.error
+        return np.concatenate([features * (joint == row.joint) for joint in JOINTS])
     motion = own_leg_motion(row.leg_m)
     features = fourier(_ANGLES - PAPER_TRICYCLE.top_dead_centre)
     parts = [rate @ features / rate.size for rate in motion.joint_rate]
-    return PAPER_TRICYCLE.cadence * np.concatenate(parts), row.value, row.error
+    return PAPER_TRICYCLE.cadence * np.concatenate(parts)
 
 
 def own_leg_motion(leg: float) -> kinematics.Motion:

@@ -1,42 +1,52 @@
-"""How much of each gain is real: at equal joint speed, with a torque-velocity relation, and how smooth the power is."""
+"""How much of each gain is real: at equal joint speed, with Hill's relation, how smooth the power is, what was held."""
 
 from dataclasses import replace
-from typing import Any
+from itertools import product
 
 import numpy as np
 
-from fes_mj.common.markdown import Table
+from fes_mj.common.arrays import FloatArray
+from fes_mj.common.units import turns_per_second
+from fes_mj.linkage.design import Design
+from fes_mj.linkage.design_file import DIMENSIONS, load_design
 from fes_mj.linkage.legs import TWO_LEGS
-from fes_mj.moments.joint_moments import GROUPS
-from fes_mj.moments.torque_velocity import TorqueVelocity, load_torque_velocity
+from fes_mj.linkage.variables import LENGTHS, lengths, with_lengths
+from fes_mj.moments.files import load_moments
+from fes_mj.moments.joint_moments import GROUPS, JointMoments
+from fes_mj.moments.torque_velocity import load_torque_velocity
 from fes_mj.moments.uncertainty import with_sd
-from fes_mj.paper.captions import captioned
-from fes_mj.paper.printed import SIX_BARS, table1
+from fes_mj.paper.captions import Rows, table
+from fes_mj.paper.printed import SIX_BARS
 from fes_mj.paper.runs import Runs, joint_speed
 from fes_mj.riding.ride import Ride, Road, steady_ripple
 from fes_mj.statics.characteristics import energy_swing
+from fes_mj.statics.cycles import cycles
 from fes_mj.statics.turn import QuasiStatic, quasi_static, ratio_sd
+from fes_mj.statics.work_table import uncertain_table
 
 TRICYCLE_MASS = 15.0  # kg, assumption: a light recumbent tricycle
+# Each design with the group that it was made for (Section 7; docs/errata.md, E14).
+MADE_FOR = {"r1": "p1p2", "r2": "p1p3", "d1": "p1p2", "d2": "p1p3"}
+HELD = ("gear ratio", "knee speed")
+STEP = 1e-4  # m, either way; the identified R2 is 0.6 mm from where it cannot turn
+_POINTS = 720
+_CM = 100.0  # in a metre
 
 
-def speed_table(runs: Runs) -> Table:
+@table("speed")
+def knee_speed_table(runs: Runs) -> Rows:
     """Gain over the TRT as the paper has it, at the TRT's mean knee speed, and with Hill's relation."""
-    rows = []
-    for name in SIX_BARS:
-        for group in GROUPS:
-            result, trt = runs.static[name, group], runs.static["trt", group]
-            slowed = at_knee_speed(result, joint_speed(trt, "knee")[0])
-            hill = runs.hill[name, group]
-            speed = joint_speed(result, "knee")[0] / joint_speed(trt, "knee")[0]
-            gains = [
-                _gain(other, base) for other, base in ((result, trt), (slowed, trt), (hill, runs.hill["trt", group]))
-            ]
-            rows.append((name.upper(), group, speed, *gains, with_sd(hill.power_mean, hill.power_sd, 1)))
-    return captioned("speed", rows)
+    for name, group in product(SIX_BARS, GROUPS):
+        result, trt, hill = runs.static[name, group], runs.static["trt", group], runs.hill[name, group]
+        knee_speed = joint_speed(trt, "knee")[0]
+        pairs = ((result, trt), (at_knee_speed(result, knee_speed), trt), (hill, runs.hill["trt", group]))
+        gains = (with_sd(own.power_mean / base.power_mean, ratio_sd(own, base)) for own, base in pairs)
+        speed = joint_speed(result, "knee")[0] / knee_speed
+        yield name.upper(), group, speed, *gains, with_sd(hill.power_mean, hill.power_sd, 1)
 
 
-def hill_table(runs: Runs) -> Table:
+@table("hill", gain=[f"{name.upper()} {group}" for name, group in product(SIX_BARS, GROUPS)])
+def hill_table(runs: Runs) -> Rows:
     """Gain with Hill's relation under other parameters."""
     hill = load_torque_velocity("hill")
     faster = {joint: 2 * speed for joint, speed in hill.max_speed.items()}
@@ -50,14 +60,17 @@ def hill_table(runs: Runs) -> Table:
         "eccentric plateau 1.1": replace(hill, eccentric_plateau=1.1),
         "eccentric plateau 1.8": replace(hill, eccentric_plateau=1.8),
     }
-    rows = [(title, *_hill_gains(runs, relation)) for title, relation in cases.items()]
-    gains = [f"{name.upper()} {group}" for name in SIX_BARS for group in GROUPS]
-    return captioned("hill", rows, gain=gains)
+    for title, relation in cases.items():
+        powers = {}
+        for (name, group), static in runs.static.items():
+            moments = replace(static.moments, torque_velocity=relation)
+            powers[name, group] = quasi_static(static.design, moments, static.cadence, points=720).power_mean
+        yield title, *(powers[name, group] / powers["trt", group] for name, group in product(SIX_BARS, GROUPS))
 
 
-def smoothness_table(runs: Runs) -> Table:
+@table("smoothness", mass=f"{TRICYCLE_MASS:g}")
+def smoothness_table(runs: Runs) -> Rows:
     """Swing of the crank power: muscles alone, segment masses alone, both; one leg and two."""
-    rows = []
     for (name, group, legs), case in runs.dynamic.items():
         run = case.simulation
         muscle = case.reference_power(mass_scale=0.0)
@@ -67,8 +80,7 @@ def smoothness_table(runs: Runs) -> Table:
         ride = Ride(run.design, run.moments, Road(tricycle_mass=TRICYCLE_MASS, rolling_mass=0.0), "fixed")
         ripple = 100 * steady_ripple(ride) if legs == len(TWO_LEGS) else None
         swings = [float(np.ptp(power)) for power in (muscle, masses, run.power)]
-        rows.append((name.upper(), group, str(legs), *swings, *(value / work for value in energy), ripple))
-    return captioned("smoothness", rows, mass=f"{TRICYCLE_MASS:g}")
+        yield name.upper(), group, str(legs), *swings, *(value / work for value in energy), ripple
 
 
 def at_knee_speed(result: QuasiStatic, mean_speed: float) -> QuasiStatic:
@@ -77,15 +89,31 @@ def at_knee_speed(result: QuasiStatic, mean_speed: float) -> QuasiStatic:
     return quasi_static(result.design, result.moments, factor * result.cadence)
 
 
-def _gain(result: QuasiStatic, base: QuasiStatic) -> str:
-    return with_sd(result.power_mean / base.power_mean, ratio_sd(result, base))
+def slopes(design: Design, moments: JointMoments) -> dict[str, tuple[FloatArray, FloatArray]]:
+    """Change of mean power per length, W/cm, and its standard deviation, shape (9,) each, by what of HELD is held.
+
+    Held knee speed: the gear ratio is such that the knee moves as fast on average as in the design itself. NaN where a
+    linkage does not turn.
+    """
+    shifts = STEP * np.concatenate([np.zeros((9, 1)), np.eye(9), -np.eye(9)], axis=1)
+    turn = cycles(
+        with_lengths(design, (lengths(design)[:, None] + shifts)[..., None]), uncertain_table(moments), _POINTS
+    )
+    power = turn.work * turns_per_second(design.linkage.cadence)
+    slowed = power * (turn.travel.knee[0] / turn.travel.knee)[:, None]
+    by_held = {}
+    for held, values in zip(HELD, (power, slowed), strict=True):
+        slope = (values[1:10] - values[10:]) / (2 * STEP * _CM)
+        by_held[held] = (slope[:, 0], np.sqrt(np.einsum("ls,ls->l", slope[:, 1:], slope[:, 1:])))
+    return by_held
 
 
-def _hill_gains(runs: Runs, relation: TorqueVelocity) -> list[Any]:
-    powers = {}
-    for name in table1():
-        for group in GROUPS:
-            static = runs.static[name, group]
-            moments = replace(static.moments, torque_velocity=relation)
-            powers[name, group] = quasi_static(static.design, moments, static.cadence, points=720).power_mean
-    return [powers[name, group] / powers["trt", group] for name in SIX_BARS for group in GROUPS]
+@table("stationarity", length=LENGTHS)
+def stationarity_table() -> Rows:
+    """What the paper's search held: slopes of every six-bar with the group that it was made for."""
+    for (name, group), dims in product(MADE_FOR.items(), DIMENSIONS):
+        for held, (slope, deviation) in slopes(load_design(name, dims), load_moments(group)).items():
+            pairs = zip(slope, deviation, strict=True)
+            cells = [None if np.isnan(value) else with_sd(value, sd, 1) for value, sd in pairs]
+            farthest = None if np.isnan(slope).any() else float(np.max(np.abs(slope) / deviation))
+            yield name.upper(), group, dims, held, *cells, farthest

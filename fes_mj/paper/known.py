@@ -112,7 +112,7 @@ def left_out(evidence: list[Evidence], hyperparameters: Hyperparameters) -> list
     for row, title, without in _leave_outs(evidence):
         others = [other for other in of_group(evidence, row.group) if other.name not in without]
         curves, _ = allowed_curves(others, row.group, hyperparameters, _LEFT_OUT_CURVES)
-        posteriors, weights = (condition(others, hyperparameters), Posterior.of(curves)), functional(row)[0]
+        posteriors, weights = (condition(others, hyperparameters), Posterior.of(curves)), functional(row)
         predictions.append(LeftOut(row, title, *(posterior.predict(weights) for posterior in posteriors)))
     return predictions
 

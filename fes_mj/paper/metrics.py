@@ -2,7 +2,6 @@
 
 import itertools
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 
@@ -13,7 +12,7 @@ from fes_mj.linkage.joints import JOINTS
 from fes_mj.moments.fourier import fourier
 from fes_mj.moments.joint_moments import GROUPS
 from fes_mj.moments.uncertainty import instant_power_weights, with_sd
-from fes_mj.paper.captions import captioned
+from fes_mj.paper.captions import Rows, captioned, table
 from fes_mj.paper.runs import Runs
 from fes_mj.statics.characteristics import extent, inactive_share
 from fes_mj.statics.turn import QuasiStatic
@@ -23,34 +22,27 @@ _DRAWS = 20_000  # of the criteria's weights
 _SEED = 2022
 
 
-def size_table(runs: Runs) -> Table:
+@table("size")
+def size_table(runs: Runs) -> Rows:
     """Section 7.1: where the crank lies, how large the mechanism is, how well it transmits."""
-    rows: list[tuple[Any, ...]] = []
     for name, result in _by_design(runs).items():
-        width, height = extent(result.motion)
+        sizes = (100 * length for length in (abs(result.design.linkage.crank_centre), *extent(result.motion)))
         angles = transmission_angles(result.motion)
-        distance = abs(result.design.linkage.crank_centre)
-        rows.append(
-            (name.upper(), 100 * distance, 100 * width, 100 * height, angles["knee"], angles.get("rocker_joint"))
-        )
-    return captioned("size", rows)
+        yield name.upper(), *sizes, angles["knee"], angles.get("rocker_joint")
 
 
-def continuity_table(runs: Runs) -> Table:
+@table("continuity", width=[f"{width:g}" for width in WIDTHS])
+def continuity_table(runs: Runs) -> Rows:
     """Section 7.2: the jump of the torque map at each end of travel, and what smoothing it costs in mean power."""
-    rows, posteriors = [], runs.known.text.posteriors
     for (name, group), result in runs.static.items():
-        jumps = [with_sd(*posteriors[group].predict(weights), digits=1) for weights in jump_weights(result)]
-        costs = [
-            with_sd(*posteriors[group].predict(smoothing_weights(result, np.radians(w))), digits=1) for w in WIDTHS
-        ]
-        rows.append((name.upper(), group, *jumps, *costs))
-    return captioned("continuity", rows, width=[f"{width:g}" for width in WIDTHS])
+        weights = [*jump_weights(result), *(smoothing_weights(result, np.radians(width)) for width in WIDTHS)]
+        posterior = runs.known.text.posteriors[group]
+        yield name.upper(), group, *(with_sd(*posterior.predict(functional), digits=1) for functional in weights)
 
 
-def distribution_table(runs: Runs) -> Table:
+@table("distribution")
+def distribution_table(runs: Runs) -> Rows:
     """Section 7.3: how power is spread over the turn, by the joint moments alone: of the mean curves, and sampled."""
-    rows = []
     for (name, group), result in runs.static.items():
         weights = instant_power_weights(result.motion, result.cadence, result.torque.reference)
         sampled = distribution(runs.known.text.curves[group] @ weights.T)
@@ -58,8 +50,7 @@ def distribution_table(runs: Runs) -> Table:
             (float(of_mean), with_sd(float(values.mean()), float(values.std()), digits))
             for of_mean, values, digits in zip(distribution(result.power), sampled, (1, 1, 1, 2), strict=True)
         ]
-        rows.append((name.upper(), group, *itertools.chain(*cells)))
-    return captioned("distribution", rows)
+        yield name.upper(), group, *itertools.chain(*cells)
 
 
 def distribution(power: FloatArray) -> tuple[FloatArray, ...]:

@@ -98,9 +98,9 @@ class System(NamedTuple):
 
     @classmethod
     def of(cls, rows: list[Evidence]) -> "System":
-        weights, values, errors = zip(*(functional(row) for row in rows), strict=True)
         six_bar = [row.quantity == "power" and row.design != "trt" for row in rows]
-        return cls(np.array(weights), np.array(values), np.array(errors), np.array(six_bar))
+        columns = ([functional(row) for row in rows], [row.value for row in rows], [row.error for row in rows], six_bar)
+        return cls(*map(np.array, columns))
 
     def covariance(self, hyperparameters: Hyperparameters) -> FloatArray:
         """Of the values before they are seen, by the curves' prior and by noise, shape (rows, rows)."""

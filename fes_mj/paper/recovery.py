@@ -1,71 +1,128 @@
-"""How far the recovered moments can be trusted: residuals, what the text says, what Table 2's rounding leaves open."""
+"""How far the recovered moments can be trusted: residuals, predictions of what is left out, the choice of the prior.
+
+Beside what the text says, and what Table 2's rounding leaves open.
+"""
+
+import math
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
-from fes_mj.common.markdown import Table
+from fes_mj.linkage.design_file import load_design
+from fes_mj.linkage.kinematics import solve
 from fes_mj.moments.fourier import fourier
 from fes_mj.moments.joint_moments import GROUPS
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
-from fes_mj.moments.uncertainty import with_sd
-from fes_mj.paper.captions import captioned
-from fes_mj.paper.evidence import functional, of_group
-from fes_mj.paper.known import Known, rms
-from fes_mj.paper.reconstruction import condition
-from fes_mj.paper.statements import load_statements
+from fes_mj.moments.uncertainty import power_weights, with_sd
+from fes_mj.paper.captions import Rows, table
+from fes_mj.paper.evidence import Evidence, functional, of_group
+from fes_mj.paper.known import Known, rms, scores
+from fes_mj.paper.reconstruction import Hyperparameters, Posterior, System, condition, most_likely
+from fes_mj.paper.statements import allowed_share, load_statements
 
 
-def evidence_table(known: Known) -> Table:
+@table("evidence")
+def evidence_table(known: Known) -> Rows:
     """Every row: value, what the curves give without and with the text, and what they would give without the row."""
-    rows = []
     for row in known.evidence:
-        weights, value, error = functional(row)
+        weights, value, error = functional(row), row.value, row.error
         fitted = known.numbers.posteriors[row.group].predict(weights)
         others = [other for other in of_group(known.evidence, row.group) if other is not row]
         left_out = condition(others, known.hyperparameters).predict(weights)
-        rows.append(
-            (
-                row.name,
-                with_sd(value, error),
-                with_sd(*fitted),
-                (fitted[0] - value) / error,
-                with_sd(*left_out),
-                (left_out[0] - value) / np.hypot(left_out[1], error),
-                with_sd(*known.text.posteriors[row.group].predict(weights)),
-                row.unit,
-            )
-        )
-    return captioned("evidence", rows)
+        residual, miss = (fitted[0] - value) / error, (left_out[0] - value) / np.hypot(left_out[1], error)
+        with_text = with_sd(*known.text.posteriors[row.group].predict(weights))
+        yield row.name, with_sd(value, error), with_sd(*fitted), residual, with_sd(*left_out), miss, with_text, row.unit
 
 
-def statement_table(known: Known) -> Table:
+@table("statement")
+def statement_table(known: Known) -> Rows:
     """What the text says of the figures beside curves of the numbers alone, and those that fulfil all of it."""
-    rows, numbers, text = [], known.numbers.curves, known.text.curves
     for group in GROUPS:
         for statement in load_statements(group):
-            values = [statement.value(curves[group]) for curves in (numbers, text)]
-            cells = [with_sd(float(value.mean()), float(value.std())) for value in values]
-            holds = 100 * float(np.mean(statement.holds(numbers[group])))
-            rows.append((group, statement.name, statement.bounds, cells[0], holds, cells[1]))
-    return captioned("statement", rows)
+            values = [statement.value(recovered.curves[group]) for recovered in (known.numbers, known.text)]
+            numbers, text = (with_sd(float(value.mean()), float(value.std())) for value in values)
+            holds = 100 * float(np.mean(statement.holds(known.numbers.curves[group])))
+            yield group, statement.name, statement.bounds, numbers, holds, text
 
 
-def knee_table(known: Known) -> Table:
+@table("knee")
+def knee_table(known: Known) -> Rows:
     """Section 7.2's two knee moments, which are evidence of one group, in both."""
-    rows = []
-    for direction, said in ((1.0, 20.0), (-1.0, -1.0)):
+    for name, direction, said in (("extending", 1.0, 20.0), ("flexing", -1.0, -1.0)):
         moment = fourier(PAPER_TRICYCLE.source_angle("knee", np.radians(73.0), direction))
         weights = np.concatenate([moment, 0 * moment])
-        name = "extending" if direction > 0 else "flexing"
         for group in GROUPS:
             cells = (with_sd(*recovered.posteriors[group].predict(weights), 1) for recovered in known.by_basis.values())
-            rows.append((name, group, said, *cells, "used" if group == "p1p2" else "not used"))
-    return captioned("knee", rows)
+            yield name, group, said, *cells, "used" if group == "p1p2" else "not used"
 
 
-def rounding_table(known: Known) -> Table:
+@table("rounding")
+def rounding_table(known: Known) -> Rows:
     """Spread of each six-bar's power over the rounding of its dimensions."""
-    rows = [
-        (name.upper(), group, float(rms(change)), float(change.mean()), len(change))
-        for (name, group), change in known.rounding.items()
+    for (name, group), change in known.rounding.items():
+        yield name.upper(), group, float(rms(change)), float(change.mean()), len(change)
+
+
+@table("left_out")
+def left_out_table(known: Known) -> Rows:
+    """Printed powers predicted without themselves, by the numbers alone and with the text."""
+    for out in known.predictions:
+        said, (numbers, text) = out.row.value, out.scores
+        percent = 100 * (out.numbers[0] / said - 1)
+        names = (out.row.group, out.row.design.upper(), out.title)
+        yield *names, said, *out.numbers, percent, numbers, *out.text, text
+
+
+@table("calibration")
+def calibration_table(known: Known) -> Rows:
+    """Root mean square of the scores, by group and over both."""
+    for title, groups in (*((group, (group,)) for group in GROUPS), ("both", GROUPS)):
+        of_groups = np.array([out.scores for out in known.predictions if out.row.group in groups])
+        yield title, len(of_groups), *rms(of_groups).tolist()
+
+
+@table("sensitivity", group=GROUPS)
+def sensitivity_table(known: Known) -> Rows:
+    """The prior chosen otherwise: likelihood, scores, what the text allows, and D1's gain over the TRT.
+
+    The last case takes its errors from the powers within the rounding of Table 2.
+    """
+    chosen = known.hyperparameters
+    data = {group: of_group(known.evidence, group) for group in GROUPS}
+    priors = {"chosen": chosen}
+    priors |= {f"length {length:g}": replace(chosen, length=length) for length in (0.3, 0.5, 0.8, 1.6)}
+    priors |= {f"amplitude {factor:g} x": replace(chosen, amplitude=factor * chosen.amplitude) for factor in (0.5, 2.0)}
+    priors |= {f"six-bars' hip off by {d:g} N m": replace(chosen, discrepancy=d) for d in (1.0, 3.0)}
+    cases = [(title, data, dict.fromkeys(GROUPS, prior)) for title, prior in priors.items()]
+    apart = {group: most_likely([System.of(rows)]) for group, rows in data.items()}
+    cases.append(("a prior for each group", data, apart))
+    errors = {key: math.hypot(0.1, rms(change)) for key, change in known.rounding.items()}  # and that of reading curves
+    rounded = {
+        group: [replace(row, error=errors.get((row.design, group), row.error)) for row in rows]
+        for group, rows in data.items()
+    }
+    common = most_likely([System.of(rows) for rows in rounded.values()])
+    cases.append(("six-bars' errors by their rounding", rounded, dict.fromkeys(GROUPS, common)))
+    return [_case(*case) for case in cases]
+
+
+def _case(title: str, data: dict[str, list[Evidence]], priors: dict[str, Hyperparameters]) -> tuple[Any, ...]:
+    """One row of the table: evidence and prior by group."""
+    pairs = [(group, data[group], prior) for group, prior in priors.items()]
+    shape = [
+        " and ".join(dict.fromkeys(f"{getattr(prior, name):.3g}" for prior in priors.values()))
+        for name in ("length", "amplitude")
     ]
-    return captioned("rounding", rows)
+    likelihood = sum(System.of(rows).log_likelihood(prior) for _, rows, prior in pairs)
+    misses = [float(rms(scores(rows, prior))) for _, rows, prior in pairs]
+    shares = [100 * allowed_share(rows, group, prior) for group, rows, prior in pairs]
+    return (title, *shape, likelihood, *misses, *shares, *(_gain(condition(rows, prior)) for _, rows, prior in pairs))
+
+
+def _gain(posterior: Posterior) -> str:
+    """D1's power per the TRT's with its standard deviation, to first order."""
+    designs = (load_design(name) for name in ("d1", "trt"))
+    d1, trt = (power_weights(solve(design), design.linkage.cadence, PAPER_TRICYCLE) for design in designs)
+    ratio = d1 @ posterior.mean / (trt @ posterior.mean)
+    return f"{ratio:.2f} +- {posterior.predict(d1 - ratio * trt)[1] / (trt @ posterior.mean):.2f}"

@@ -14,21 +14,10 @@ from fes_mj.common.provenance import provenance
 from fes_mj.common.reading import DATA, read_json
 from fes_mj.common.style import STYLE
 from fes_mj.common.writing import json_text, write_files
-from fes_mj.paper import (
-    calibration,
-    error_budget,
-    gains,
-    metrics,
-    people,
-    readings,
-    recovery,
-    riding,
-    stationarity,
-    tables,
-    work_shares,
-)
+from fes_mj.paper import error_budget, gains, identification, metrics, recovery, riding, tables
 from fes_mj.paper.captions import figure_section, page_title
 from fes_mj.paper.runs import RUNS, Runs, run_all
+from fes_mj.paper.work_shares import share_table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -78,56 +67,27 @@ def reproduce(folder: Path, done: Done, svg: bool = False) -> list[Path]:
 
 def _pages(runs: Runs) -> dict[str, list[Table]]:
     """Tables of every page by its name."""
-    facts, rides, budgets = runs.known, runs.rides, runs.budgets
+    moments = (
+        *(recovery.evidence_table, recovery.left_out_table, recovery.calibration_table, recovery.sensitivity_table),
+        *(recovery.statement_table, recovery.knee_table, share_table, recovery.rounding_table),
+    )
+    ranges, of_powers = identification.ranges_table(), (tables.power_table, tables.gain_table, tables.motion_table)
+    criteria = (metrics.size_table, metrics.continuity_table, metrics.distribution_table, metrics.ranking_table)
+    rides = (riding.speed_table, riding.start_table, riding.gear_table, riding.transmission_table)
+    of_gains = (gains.knee_speed_table, gains.hill_table, gains.smoothness_table)
+    budget = (
+        *(error_budget.contribution_table, error_budget.share_table),
+        *(error_budget.probability_table, error_budget.better_table),
+    )
     return {
-        "identification": [
-            readings.dimensions_table(),
-            readings.ranges_table(),
-            readings.readings_table(runs.readings),
-        ],
-        "moments": [
-            recovery.evidence_table(facts),
-            calibration.left_out_table(facts),
-            calibration.calibration_table(facts),
-            calibration.sensitivity_table(facts),
-            recovery.statement_table(facts),
-            recovery.knee_table(facts),
-            work_shares.share_table(facts),
-            recovery.rounding_table(facts),
-        ],
-        "powers": [
-            tables.power_table(runs),
-            tables.gain_table(runs),
-            tables.motion_table(runs),
-            readings.ranges_table(),
-            tables.check_table(runs),
-        ],
-        "metrics": [
-            metrics.size_table(runs),
-            metrics.continuity_table(runs),
-            metrics.distribution_table(runs),
-            metrics.ranking_table(runs),
-        ],
-        "people": [people.percentile_table(), people.population_table(runs)],
-        "riding": [
-            riding.speed_table(rides),
-            riding.start_table(rides),
-            riding.gear_table(rides),
-            riding.transmission_table(rides),
-        ],
-        "gains": [
-            gains.speed_table(runs),
-            gains.hill_table(runs),
-            gains.smoothness_table(runs),
-            stationarity.stationarity_table(),
-        ],
-        "error_budget": [
-            error_budget.prior_table(),
-            error_budget.contribution_table(budgets),
-            error_budget.share_table(budgets),
-            error_budget.probability_table(budgets),
-            error_budget.better_table(budgets),
-        ],
+        "identification": [identification.dimensions_table(), ranges, identification.readings_table(runs.readings)],
+        "moments": [table(runs.known) for table in moments],
+        "powers": [*(table(runs) for table in of_powers), ranges, tables.check_table(runs)],
+        "metrics": [table(runs) for table in criteria],
+        "people": [tables.percentile_table(), tables.population_table(runs.people)],
+        "riding": [table(runs.rides) for table in rides],
+        "gains": [*(table(runs) for table in of_gains), gains.stationarity_table()],
+        "error_budget": [error_budget.prior_table(), *(table(runs.budgets) for table in budget)],
     }
 
 

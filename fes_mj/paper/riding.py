@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 
 from fes_mj.common.errors import require_extra
-from fes_mj.common.markdown import Table
 from fes_mj.common.units import KMH, RPM
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.design_file import DESIGNS, load_design
@@ -20,7 +19,7 @@ from fes_mj.moments.files import load_moments, sampled_moments
 from fes_mj.moments.joint_moments import GROUPS, JointMoments
 from fes_mj.moments.torque_velocity import drawn_relations, load_torque_velocity
 from fes_mj.moments.uncertainty import with_sd
-from fes_mj.paper.captions import captioned
+from fes_mj.paper.captions import Rows, table
 from fes_mj.riding.ride import TRANSMISSIONS, Ride, Road, balancing_slope
 from fes_mj.riding.starts import Starts, starts
 from fes_mj.riding.trace import Trace, ride as solved
@@ -52,6 +51,10 @@ class Riding:
     uphill: list[Trace]
     starts: list[Starts]
     gears: dict[float, list[float]]
+
+    @property
+    def names(self) -> tuple[str, str, str]:
+        return self.design.name.upper(), self.group, self.transmission
 
 
 def ride_all(done: Callable[[], None]) -> list[Riding]:
@@ -96,15 +99,16 @@ def _riding(design: Design, group: str, muscles: list[JointMoments], transmissio
 
 
 def _geared(ride: Ride, ratio: float, slope: float) -> Ride:
-    linkage = replace(ride.design.linkage, gear_ratio=ratio * ride.design.linkage.gear_ratio)
-    return replace(ride, design=replace(ride.design, linkage=linkage), road=Road(slope=slope))
+    geared = ride.design.with_linkage(gear_ratio=ratio * ride.design.linkage.gear_ratio)
+    return replace(ride, design=geared, road=Road(slope=slope))
 
 
-def speed_table(rides: list[Riding]) -> Table:
+@table("riding", draws=str(DRAWS))
+def speed_table(rides: list[Riding]) -> Rows:
     """What each settles to on the flat, and whether it rides on the slope that its mean power balances."""
-    rows = [
-        (
-            *_names(riding),
+    for riding in rides:
+        yield (
+            *riding.names,
             _with_scatter(lambda trace: trace.mean_speed and trace.mean_speed / KMH, riding.flat),
             _with_scatter(lambda trace: trace.cadence and trace.cadence / RPM, riding.flat, 0),
             _with_scatter(lambda trace: trace.ripple and 100 * trace.ripple, riding.flat),
@@ -113,57 +117,39 @@ def speed_table(rides: list[Riding]) -> Table:
             "rides" if riding.uphill[0].rides else f"stops after {riding.uphill[0].stopped_at:.0f} s",
             f"{sum(trace.rides for trace in riding.uphill[1:])} of {DRAWS}",
         )
-        for riding in rides
-    ]
-    return captioned("riding", rows, draws=str(DRAWS))
 
 
-def start_table(rides: list[Riding]) -> Table:
+@table("starts", angles=str(2 * ANGLES), draws=str(START_DRAWS))
+def start_table(rides: list[Riding]) -> Rows:
     """From which crank angles each starts, the launch it needs, the slope it climbs."""
-    rows = [
-        (
-            *_names(riding),
+    for riding in rides:
+        yield (
+            *riding.names,
             _with_scatter(lambda start: 100 * start.share, riding.starts, 0),
             _with_scatter(lambda start: None if start.launch is None else start.launch / KMH, riding.starts),
             _with_scatter(lambda start: None if start.slope is None else 100 * start.slope, riding.starts),
         )
-        for riding in rides
-    ]
-    return captioned("starts", rows, angles=str(2 * ANGLES), draws=str(START_DRAWS))
 
 
-def gear_table(rides: list[Riding]) -> Table:
+@table("gears")
+def gear_table(rides: list[Riding]) -> Rows:
     """The gear ratio with which each is fastest on the flat and uphill."""
-    rows = []
     for riding in rides:
         cells: list[float | None] = []
         for speeds in riding.gears.values():
-            best = int(np.argmax(speeds))
-            goes_on = speeds[best] > 0
-            cells += [float(RATIOS[best]) * riding.design.linkage.gear_ratio if goes_on else None]
-            cells += [speeds[best] / KMH if goes_on else None]
-        rows.append((*_names(riding), riding.design.linkage.gear_ratio, *cells))
-    return captioned("gears", rows)
+            best, gear_ratio = int(np.argmax(speeds)), riding.design.linkage.gear_ratio
+            cells += [float(RATIOS[best]) * gear_ratio, speeds[best] / KMH] if speeds[best] > 0 else [None, None]
+        yield *riding.names, riding.design.linkage.gear_ratio, *cells
 
 
-def transmission_table(rides: list[Riding]) -> Table:
+@table("transmissions")
+def transmission_table(rides: list[Riding]) -> Rows:
     """Distance in a minute with a fixed gear per that with a freewheel, beside what was measured on the road."""
-    by = {_names(riding): riding for riding in rides}
-    rows = []
-    for (name, group, transmission), fixed in by.items():
+    distances = {riding.names: [riding.flat[0].distance.max(), riding.uphill[0].distance.max()] for riding in rides}
+    for (name, group, transmission), fixed in distances.items():
         if transmission == "fixed":
-            free = by[name, group, "freewheel"]
-            pairs = (fixed.flat[0], free.flat[0]), (fixed.uphill[0], free.uphill[0])
-            rows.append((name, group, *(100 * (_distance(one) / _distance(other) - 1) for one, other in pairs)))
-    return captioned("transmissions", rows)
-
-
-def _distance(trace: Trace) -> float:
-    return float(trace.distance.max())
-
-
-def _names(riding: Riding) -> tuple[str, str, str]:
-    return riding.design.name.upper(), riding.group, riding.transmission
+            pairs = zip(fixed, distances[name, group, "freewheel"], strict=True)
+            yield name, group, *(100 * (float(one) / float(other) - 1) for one, other in pairs)
 
 
 def _with_scatter(of: Callable[[Any], float | None], rides: Sequence[Any], digits: int = 1) -> str | None:

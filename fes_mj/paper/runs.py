@@ -12,13 +12,13 @@ from fes_mj.linkage.design_file import DESIGNS, load_design
 from fes_mj.moments.files import load_moments
 from fes_mj.moments.joint_moments import GROUPS
 from fes_mj.moments.torque_velocity import load_torque_velocity
-from fes_mj.paper import error_budget, readings, riding
+from fes_mj.paper import error_budget, identification, riding
 from fes_mj.paper.evidence import load_evidence
 from fes_mj.paper.known import Known, known
 from fes_mj.statics.turn import QuasiStatic, quasi_static
 
 # Simulations, populations, rides ...
-RUNS = (2 * len(GROUPS) + 1) * len(DESIGNS) + riding.STEPS + error_budget.STEPS + readings.STEPS
+RUNS = (2 * len(GROUPS) + 1) * len(DESIGNS) + riding.STEPS + error_budget.STEPS + identification.STEPS
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ class Runs:
 
 def run_all(done: Callable[[], None]) -> Runs:
     """Solve and simulate everything; `done` is called RUNS times."""
-    runs = Runs(known(load_evidence()), {}, {}, {}, {}, {}, riding.ride_all(done), {}, readings.read_all(done))
+    runs = Runs(known(load_evidence()), {}, {}, {}, {}, {}, riding.ride_all(done), {}, identification.read_all(done))
     moments = {group: load_moments(group) for group in GROUPS}
     for name in DESIGNS:
         for group in GROUPS:

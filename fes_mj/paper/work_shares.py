@@ -5,13 +5,12 @@ from typing import NamedTuple
 import numpy as np
 
 from fes_mj.common.arrays import FloatArray
-from fes_mj.common.markdown import Table
 from fes_mj.common.reading import read_toml
 from fes_mj.linkage.joints import PerJoint
 from fes_mj.moments.fourier import fourier
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.moments.uncertainty import with_sd
-from fes_mj.paper.captions import captioned
+from fes_mj.paper.captions import Rows, table
 from fes_mj.paper.evidence import own_leg_motion
 from fes_mj.paper.known import BASES, Known
 from fes_mj.paper.statements import TEXT
@@ -62,19 +61,15 @@ def shares(curves: FloatArray, leg: float, muscles: str) -> tuple[FloatArray, Fl
     return 100 * net / (concentric + eccentric), 100 * part / concentric
 
 
-def share_table(known: Known) -> Table:
+@table("share", reading=[f"{reading}, {basis}" for reading in ("net", "concentric") for basis in BASES])
+def share_table(known: Known) -> Rows:
     """What the abstract says beside both readings, by curves of the numbers alone and with the text."""
-    rows = []
     for said in read_toml(TEXT, "statements").content["share"]:
-        group, cells = said["group"], []
-        counted = [
-            shares(recovered.curves[group], said["leg_m"], said["muscles"]) for recovered in known.by_basis.values()
-        ]
-        for reading in zip(*counted, strict=True):
-            cells += [with_sd(float(np.median(values)), _half_width(values), 0) for values in reading]
-        rows.append((group, said["muscles"], float(said["value"]), *cells))
-    readings = [f"{reading}, {basis}" for reading in ("net", "concentric") for basis in BASES]
-    return captioned("share", rows, reading=readings)
+        group, muscles = said["group"], said["muscles"]
+        counted = [shares(recovered.curves[group], said["leg_m"], muscles) for recovered in known.by_basis.values()]
+        values = (basis for reading in zip(*counted, strict=True) for basis in reading)
+        cells = (with_sd(float(np.median(share)), _half_width(share), 0) for share in values)
+        yield group, muscles, float(said["value"]), *cells
 
 
 def _half_width(values: FloatArray) -> float:

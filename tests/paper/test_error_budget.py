@@ -73,9 +73,9 @@ def test_more_is_never_more_probable() -> None:
 
 def test_shares_are_shares() -> None:
     for row in BLAME:
-        some = [row[f"{unknown}, %"] for unknown in [*priors()][:-1]]
-        pairs = [tuple(map(float, cell.split(" / "))) for cell in some if cell is not None]
-        assert len(pairs) == len(some) - len(CASES[row["case"]])
+        cells = [row[f"{unknown}, %"] for unknown in [*priors()][:-1]]
+        pairs = [tuple(map(float, cell.split(" / "))) for cell in cells if cell is not None]
+        assert len(pairs) == len(cells) - len(CASES[row["case"]])
         error = row["largest 95 % error, %"]
         assert sum(first for first, _ in pairs) <= 100 + 2 * error
         assert sum(total for _, total in pairs) >= 100 - 2 * error

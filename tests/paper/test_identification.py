@@ -5,8 +5,9 @@ import math
 import pytest
 
 from fes_mj import load_design
-from fes_mj.paper.identification import identify, range_misfit
-from fes_mj.paper.printed import table1
+from fes_mj.linkage.design_file import DESIGNS
+from fes_mj.paper.identification import identify, range_misfit, ranges_table
+from fes_mj.paper.printed import SIX_BARS, table1
 
 
 def test_the_shipped_catalogue_is_the_output_of_the_identification() -> None:
@@ -31,3 +32,10 @@ def test_a_reading_that_cannot_fit_misses_by_what_is_left() -> None:
     """A seat angle off by 30 deg shifts both hip limits by 30 deg; the rounding takes back less than 4."""
     miss = range_misfit(load_design("r1", "printed"), table1()["r1"], math.radians(60), math.radians(90))
     assert 26 < miss < 30
+
+
+def test_identified_dimensions_move_as_printed_and_the_print_does_not() -> None:
+    verdict = {(row["design"], row["dimensions"]): row["within rounding"] for row in ranges_table().records()}
+    assert {verdict[name.upper(), "identified"] for name in DESIGNS} == {"yes"}
+    assert not {verdict[name.upper(), "printed"] for name in SIX_BARS} & {"yes"}
+    assert verdict["R2", "printed"] == "cannot turn"

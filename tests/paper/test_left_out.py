@@ -20,7 +20,7 @@ def test_scores_in_closed_form_are_those_of_conditioning(predictions: list[LeftO
     evidence = load_evidence()
     for group in GROUPS:
         quick = scores(of_group(evidence, group), choose_hyperparameters(evidence))
-        long = [each.scores[0] for each in predictions if each.row.group == group]
+        long = [out.scores[0] for out in predictions if out.row.group == group]
         assert quick == pytest.approx(long, rel=1e-6, abs=1e-9)
 
 
@@ -28,7 +28,7 @@ def test_scores_in_closed_form_are_those_of_conditioning(predictions: list[LeftO
 def test_leaving_the_trt_out_leaves_its_twin_out_too(predictions: list[LeftOut]) -> None:
     """Without both, the TRT is predicted less surely than with the 15 W item."""
     for group in GROUPS:
-        alone, both = (each for each in predictions if each.row.group == group and each.row.design == "trt")
+        alone, both = (out for out in predictions if out.row.group == group and out.row.design == "trt")
         assert both.title == "itself and the 15 W item"
         for one, other in zip((alone.numbers, alone.text), (both.numbers, both.text), strict=True):
             assert other[1] > 2 * one[1]
@@ -37,10 +37,10 @@ def test_leaving_the_trt_out_leaves_its_twin_out_too(predictions: list[LeftOut])
 @pytest.mark.long
 def test_stated_errors_hold(predictions: list[LeftOut]) -> None:
     """With the right errors the rms is 1, within the 0.2 that 12 scores leave, and the 0.3 of a group's six."""
-    both = rms(np.array([each.scores for each in predictions]))
+    both = rms(np.array([out.scores for out in predictions]))
     assert np.all((both > 0.8) & (both < 1.2))
     for group in GROUPS:
-        assert np.all(rms(np.array([each.scores for each in predictions if each.row.group == group])) < 1.3)
+        assert np.all(rms(np.array([out.scores for out in predictions if out.row.group == group])) < 1.3)
 
 
 def test_a_discrepancy_makes_six_bars_less_sure_and_leaves_the_trt() -> None:
@@ -48,7 +48,7 @@ def test_a_discrepancy_makes_six_bars_less_sure_and_leaves_the_trt() -> None:
     rows, chosen = of_group(load_evidence(), "p1p2"), Hyperparameters(1.0, 15.0)
     apart = Hyperparameters(1.0, 15.0, discrepancy=5.0)
     for row in rows:
-        weights, _, error = functional(row)
+        weights, error = functional(row), row.error
         sure, unsure = (condition([row], prior).predict(weights)[1] for prior in (chosen, apart))
         if row.quantity == "power" and row.design != "trt":
             noise = error**2 + np.sum(weights[49:] ** 2 * apart.discrepancy_variance()[49:])

@@ -73,7 +73,7 @@ def test_the_quick_way_to_leave_rows_out_is_the_long_one() -> None:
         rows = [row for row in evidence if row.group == group]
         posterior = condition(rows, chosen)
         for row, miss in zip(rows, left_out_misses(rows, chosen), strict=True):
-            weights, value, error = functional(row)
+            weights, value, error = functional(row), row.value, row.error
             mean, deviation = condition([other for other in rows if other is not row], chosen).predict(weights)
             assert miss == pytest.approx((value - mean) / math.hypot(deviation, error), rel=1e-6, abs=1e-9)
             assert abs(miss) >= abs(value - posterior.predict(weights)[0]) / error - 1e-9
@@ -83,7 +83,7 @@ def test_a_row_left_out_is_predicted_less_surely() -> None:
     evidence = load_evidence()
     recovered = reconstruct(evidence)
     for row in evidence:
-        weights, _, _ = functional(row)
+        weights = functional(row)
         others = [other for other in evidence if other.group == row.group and other is not row]
         _, fitted = recovered.posteriors[row.group].predict(weights)
         _, left_out = condition(others, recovered.hyperparameters).predict(weights)
@@ -92,7 +92,7 @@ def test_a_row_left_out_is_predicted_less_surely() -> None:
 
 def test_what_was_used_comes_back(posteriors: dict[str, Posterior]) -> None:
     (row,) = (row for row in load_evidence() if row.name == "p1p2 knee extending at 73 deg")
-    weights, value, error = functional(row)
+    weights, value, error = functional(row), row.value, row.error
     recovered, _ = posteriors[row.group].predict(weights)
     assert value == 20
     assert abs(recovered - value) < error

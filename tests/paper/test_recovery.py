@@ -3,10 +3,16 @@
 import pytest
 
 from fes_mj.moments.joint_moments import GROUPS
-from fes_mj.paper.calibration import calibration_table, left_out_table, sensitivity_table
 from fes_mj.paper.evidence import load_evidence
 from fes_mj.paper.known import Known, known
-from fes_mj.paper.recovery import evidence_table, knee_table, statement_table
+from fes_mj.paper.recovery import (
+    calibration_table,
+    evidence_table,
+    knee_table,
+    left_out_table,
+    sensitivity_table,
+    statement_table,
+)
 
 
 @pytest.fixture(scope="module")

@@ -47,5 +47,7 @@ def test_muscles_are_drawn_anew_and_always_the_same() -> None:
     best, *drawn = riding._muscles("p1p2")
     again = riding._muscles("p1p2")[1:]
     assert best.torque_velocity == load_torque_velocity("hill")
-    assert len({each.torque_velocity.max_speed["knee"] for each in drawn if each.torque_velocity}) == riding.DRAWS
-    assert [each.knee.tolist() for each in drawn] == [each.knee.tolist() for each in again]
+    assert (
+        len({moments.torque_velocity.max_speed["knee"] for moments in drawn if moments.torque_velocity}) == riding.DRAWS
+    )
+    assert [moments.knee.tolist() for moments in drawn] == [moments.knee.tolist() for moments in again]

@@ -25,14 +25,14 @@ def test_a_constant_knee_moment_does_no_net_work() -> None:
 def test_all_muscles_together_do_the_work_of_the_leg() -> None:
     curves = sampled_coefficients("p1p2")[:5]
     (row,) = (row for row in load_evidence() if row.name == "p1p2 15 W with own legs")
-    net = sum(each.net for each in work(curves, row.leg_m).values())
-    assert PAPER_TRICYCLE.cadence * net == pytest.approx(curves @ functional(row)[0])
+    net = sum(of_muscles.net for of_muscles in work(curves, row.leg_m).values())
+    assert PAPER_TRICYCLE.cadence * net == pytest.approx(curves @ functional(row))
 
 
 def test_shares_add_up() -> None:
     curves = sampled_coefficients("p1p3")[:5]
     muscles = ("knee extensors", "knee flexors", "hip extensors", "hip flexors")
-    net, concentric = zip(*(shares(curves, 0.542, each) for each in muscles), strict=True)
+    net, concentric = zip(*(shares(curves, 0.542, name) for name in muscles), strict=True)
     assert np.sum(net, axis=0) == pytest.approx(100)
     assert np.sum(concentric, axis=0) == pytest.approx(100)
     eccentric = shares(curves, 0.542, "eccentric")
