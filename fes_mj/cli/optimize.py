@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
@@ -130,19 +129,15 @@ def _write(optimum: Optimum, origin: str, findings: Findings, options: SearchOpt
 
     design = optimum.design
     paths = {"design_file": findings.out, **_beside(findings.out, options)}
-    texts: dict[str, Callable[[], str]] = {
-        "design_file": lambda: design_toml(design, origin),
-        "model_file": lambda: mjcf_text(build_mjcf(design)),
-    }
+    findings.write(design_toml(design, origin), findings.out)
+    options.name_files(design_file=findings.out)
+    texts = {"model_file": mjcf_text(build_mjcf(design))}
     if optimum.front:
-        texts["front_file"] = optimum.front.as_csv
+        texts["front_file"] = optimum.front.as_csv()
     for key, text in texts.items():
-        if key == "design_file":
-            findings.write(text(), paths[key])
-        else:
-            write_files({paths[key]: text()}, unnamed=[paths[key]])
+        write_files({paths[key]: text}, unnamed=[paths[key]])
         options.name_files(**{key: paths[key]})
-    return {key: str(paths[key]) for key in texts}
+    return {key: str(path) for key, path in paths.items()}
 
 
 def _print(winner: Winner, optimum: Optimum) -> None:

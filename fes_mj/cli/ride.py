@@ -11,7 +11,7 @@ from cyclopts import Group, Parameter
 from cyclopts.validators import Number, mutually_exclusive
 
 from fes_mj.cli.options import DesignName, Dims, Flag, Lag, MomentsOptions, Out, PrintOptions, require_lag
-from fes_mj.cli.tables import conclude_checks, or_dash, print_checks, what_moves
+from fes_mj.cli.tables import beside, conclude_checks, or_dash, print_checks, what_moves
 from fes_mj.common.console import print_table, say
 from fes_mj.common.errors import require_extra
 from fes_mj.common.units import KMH, RPM
@@ -165,8 +165,8 @@ def _texts(case: RideCase, starts: Starts | None, result: str) -> list[str]:
 def _print(case: RideCase, starts: Starts | None) -> None:
     ride, run = case.ride, case.simulation.trace
     road = f"{ride.transmission}{' gear' if ride.fixed else ''}, {100 * ride.road.slope:g} % slope"
-    both = [(name, mine, other) for (name, mine), (_, other) in zip(_rows(run), _rows(case.reference), strict=True)]
-    print_table(f"{what_moves(ride.design, ride.moments)}; {road}", ("", "MuJoCo", "reduced model"), both)
+    title = f"{what_moves(ride.design, ride.moments)}; {road}"
+    print_table(title, ("", "MuJoCo", "reduced model"), beside(_rows(run), _rows(case.reference)))
     print_checks("Checks", case.checks)
     if starts:
         rows = [

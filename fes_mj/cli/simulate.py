@@ -101,16 +101,11 @@ def _print(case: Case, verbose: bool) -> None:
         *(tables.span(ends) for ends in run.joint_range_deg),
     )
     sides = ("",) if len(case.statics.turns) == 1 else (", right", ", left")
-    names = [name for name, _ in tables.power_rows(case.static)]
-    columns = [[value for _, value in tables.power_rows(turn)] for turn in case.statics.turns]
-    print_table(
-        tables.heading(case.static, len(run.legs)),
-        ("", *(f"quasi-static{side}" for side in sides), "dynamic"),
-        [*zip(names, *columns, dynamic, strict=True)],
-    )
+    rows = zip(tables.beside(*map(tables.power_rows, case.statics.turns)), dynamic, strict=True)
+    heads = ("", *(f"quasi-static{side}" for side in sides), "dynamic")
+    print_table(tables.heading(case.static, len(run.legs)), heads, [(*row, measured) for row, measured in rows])
     tables.print_budget(*case.statics.turns)
-    quasi, measured = (tables.turn_rows(content) for content in (case.static.summary(), turn_summary(case)))
-    turn = [(name, value, other) for (name, value), (_, other) in zip(quasi, measured, strict=True)]
+    turn = tables.beside(*map(tables.turn_rows, (case.static.summary(), turn_summary(case))))
     together = "dynamic" if len(run.legs) == 1 else "dynamic, both legs"
     print_table("The turn", ("", f"quasi-static{sides[0]}", together), turn)
     tables.print_forces(case.joint_forces)

@@ -52,9 +52,8 @@ def _comparison(loaded: list[Loaded], results: list[LegTurns], curves: bool) -> 
 def _print(loaded: Loaded, result: LegTurns, curves: bool, verbose: bool) -> None:
     first = result.first
     sides = ("quasi-static",) if len(result.turns) == 1 else ("right", "left")
-    names = [name for name, _ in tables.power_rows(first)]
-    columns = [[value for _, value in tables.power_rows(turn)] for turn in result.turns]
-    print_table(tables.heading(first, result.legs), ("", *sides), [*zip(names, *columns, strict=True)])
+    rows = tables.beside(*map(tables.power_rows, result.turns))
+    print_table(tables.heading(first, result.legs), ("", *sides), rows)
     if verbose:
         tables.print_budget(*result.turns)
     elif result.power_sd is not None:
@@ -81,8 +80,8 @@ def _print_comparison(results: list[LegTurns]) -> None:
         ),
         ("  per the first design's", *(with_sd(ratio, deviation or None, 3) for ratio, deviation in ratios)),
     ]
-    columns = [[*tables.power_rows(result.first)[1:], *tables.turn_rows(result.summary())] for result in results]
-    rows += [(row[0][0], *(value for _, value in row)) for row in zip(*columns, strict=True)]
+    rows += tables.beside(*(tables.power_rows(result.first)[1:] for result in results))
+    rows += tables.beside(*map(tables.turn_rows, summaries))
     names = [result.first.design.name for result in results]
     print_table(f"{results[0].first.moments.name}, quasi-static", ("", *names), rows)
     for result in results:

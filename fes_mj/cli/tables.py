@@ -68,6 +68,11 @@ def print_forces(joint_forces: JointForces) -> None:
     say(f"note: {NET_FORCE[0].lower()}{NET_FORCE[1:]}")
 
 
+def beside(*results: list[tuple[str, str]]) -> list[tuple[str, ...]]:
+    """Rows of several results as one table: the quantity, then what it is in each."""
+    return [(rows[0][0], *(value for _, value in rows)) for rows in zip(*results, strict=True)]
+
+
 def span(ends: Sequence[float]) -> str:
     """A range of angles."""
     return f"{ends[0]:.1f} to {ends[1]:.1f}"

@@ -94,8 +94,8 @@ def _angle_unit(description: Description, table: TextTable) -> str:
     unit = description.section.choice("angle_unit", ("deg", "rad"), said)
     if header is not None and unit != said:
         raise InputError(
-            f"{table.path}: the header says that angles are in {said}, moments.angle_unit of {description.path} says "
-            f"{unit}; correct one of them"
+            f"{table.path}: the header says that angles are in {said}, moments.angle_unit of "
+            f"{description.section.path} says {unit}; correct one of them"
         )
     return unit
 

@@ -30,7 +30,6 @@ class Description:
     columns of its components, or none.
     """
 
-    path: Path
     section: Section
     data: list[Path]
     kinematics: list[Path]
@@ -64,7 +63,6 @@ class Description:
         extension = section.section("extension")
         extension.only(JOINTS)
         return cls(
-            path,
             section,
             data,
             kinematics,
@@ -133,9 +131,8 @@ def _zero(section: Section, measured_on: ReferenceTricycle) -> float:
     """Where the crank angle is zero, rad after top dead centre."""
     value = section.content.get("zero", "tdc")
     if isinstance(value, str):
-        return {"tdc": 0.0, "horizontal": -measured_on.top_dead_centre}[
-            section.choice("zero", ("tdc", "horizontal"), "tdc")
-        ]
+        named = {"tdc": 0.0, "horizontal": -measured_on.top_dead_centre}
+        return named[section.choice("zero", named, "tdc")]
     return math.radians(section.number("zero", -360, 360, '"tdc", "horizontal" or degrees after tdc from -360 to 360'))
 
 

@@ -23,15 +23,9 @@ from fes_mj.simulation.stepping import FORCE_EVERY, Loop, Records, drive_address
 _numba: Any = require_extra("optimize", "numba", "llvmlite")
 
 
-def _library() -> Path:
-    """MuJoCo's shared library, beside its Python bindings."""
-    folder = Path(mujoco.__file__).parent
-    return next(
-        path for pattern in ("libmujoco*.so*", "libmujoco*.dylib", "mujoco.dll") for path in folder.glob(pattern)
-    )
-
-
-require_extra("optimize", "llvmlite.binding").load_library_permanently(str(_library()))
+_names = ("libmujoco*.so*", "libmujoco*.dylib", "mujoco.dll")  # of MuJoCo's library, beside its Python bindings
+_library = next(path for name in _names for path in Path(mujoco.__file__).parent.glob(name))
+require_extra("optimize", "llvmlite.binding").load_library_permanently(str(_library))
 _address, _flag = _numba.types.intp, _numba.types.int32
 _two = _numba.types.void(_address, _address)
 _step1, _step2, _com_vel = (_numba.types.ExternalFunction(name, _two) for name in ("mj_step1", "mj_step2", "mj_comVel"))

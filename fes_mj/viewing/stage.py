@@ -14,8 +14,7 @@ from fes_mj.linkage.assembly import bounding_box
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.legs import LEGS, Leg
 from fes_mj.linkage.segments import foot_points
-from fes_mj.simulation.appearance import Spec
-from fes_mj.simulation.shapes import PARTS, bars
+from fes_mj.simulation.appearance import PARTS, Spec, bars
 
 SIDE = 720  # pixels; pictures are square
 # Drawn so many times as large and reduced, without MuJoCo's own smoothing of edges, which takes longer.

@@ -10,8 +10,8 @@ from fes_mj import load_design
 from fes_mj.common.style import COLOURS, LINKS, rgb
 from fes_mj.linkage.design_file import DESIGNS
 from fes_mj.linkage.segments import inertias
+from fes_mj.simulation.appearance import PARTS
 from fes_mj.simulation.mjcf import build_mjcf
-from fes_mj.simulation.shapes import PARTS
 
 
 @pytest.mark.parametrize("legs", [1, 2])

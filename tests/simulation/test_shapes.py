@@ -6,7 +6,7 @@ import pytest
 import fes_mj
 from fes_mj.common.style import LINKS, hex_colour, rgb
 from fes_mj.linkage.segments import foot_points
-from fes_mj.simulation.shapes import PARTS, back_to_front, bars
+from fes_mj.simulation.appearance import PARTS, back_to_front, bars
 
 
 def test_an_outline_is_half_a_thickness_from_its_line(design: fes_mj.Design) -> None:
