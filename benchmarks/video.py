@@ -22,7 +22,7 @@ from fes_mj.linkage.legs import LEGS
 from fes_mj.moments.files import load_moments
 from fes_mj.simulation.mjcf import build_mjcf
 from fes_mj.viewing import render
-from fes_mj.viewing.panel import PowerPanel
+from fes_mj.viewing.panel import power_panel
 from fes_mj.viewing.stage import SIDE, Camera
 
 ROUNDS = 3  # of both ways in turn; medians and ratios are over rounds
@@ -43,7 +43,7 @@ def plain(path: Path) -> None:
 
 
 def _plain_frames(model: mujoco.MjModel) -> Iterator[Picture]:
-    run, data, panel = CASE.simulation, mujoco.MjData(model), PowerPanel(CASE, render.PLOT_WIDTH, SIDE)
+    run, data, panel = CASE.simulation, mujoco.MjData(model), power_panel(CASE, render.PLOT_WIDTH, SIDE)
     camera = Camera(run.design, LEGS[1][0]).forwards(0)
     with mujoco.Renderer(model, SIDE, SIDE) as renderer:
         for step in render.steps_shown(run, render.slow_motion(run.cadence)):
@@ -51,7 +51,7 @@ def _plain_frames(model: mujoco.MjModel) -> Iterator[Picture]:
                 data.joint(name).qpos[0] = angle[step]
             mujoco.mj_forward(model, data)
             renderer.update_scene(data, camera)
-            yield np.hstack([renderer.render(), panel.frame(int(step))])
+            yield np.hstack([renderer.render(), panel(int(step))])
 
 
 def ours(path: Path) -> None:

@@ -1,6 +1,6 @@
 """How evenly designs push and ride: the crank's energy over a turn, and the ripple of its speed on a tricycle."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from fes_mj.linkage.kinematics import FULL_TURN, Motion, solve
 from fes_mj.linkage.legs import all_legs
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.torque_map import torque_map
-from fes_mj.riding.ride import Ride, Road, even_ripple
+from fes_mj.riding.ride import Ride, even_ripple
 from fes_mj.statics.characteristics import energy_fluctuation
 from fes_mj.statics.equilibrium import virtual_work
 
@@ -34,13 +34,14 @@ class RippleLimit:
 
     limit: float
     moments: JointMoments
-    road: Road = field(default_factory=Road)
 
     def ripple(self, design: Design) -> FloatArray:
         """Of a batch of designs that turn, shape (designs,); from 120 angles, within 1 % of what a fine table gives."""
         motion = solve(design, SCAN)
-        ride = Ride(design, self.moments, self.road, "fixed")
-        masses = CrankInertia(*map(all_legs, crank_inertia(motion)))
+        ride, masses = (
+            Ride(design, self.moments, transmission="fixed"),
+            CrankInertia(*map(all_legs, crank_inertia(motion))),
+        )
         return np.broadcast_to(even_ripple(ride, _both_legs(motion, self.moments), masses), design.size)
 
 

@@ -34,40 +34,40 @@ class Front:
 
     def as_json(self) -> list[dict[str, Any]]:
         """A dictionary a design."""
-        rows = [
-            {"power_mean_W": dict(zip(GROUPS, power, strict=True)), "x": list(x)}
+        rows: list[dict[str, Any]] = [
+            {"power_mean_W": dict(zip(GROUPS, power, strict=True)), "x": x}
             for power, x in zip(self.power.tolist(), self.x.tolist(), strict=True)
         ]
-        if self.fluctuation is not None:
-            rows = [row | {"fluctuation": value} for row, value in zip(rows, self.fluctuation.tolist(), strict=True)]
+        for row, value in zip(rows, self._smooth.get("fluctuation", ()), strict=False):
+            row["fluctuation"] = float(value)
         return rows
 
     def as_csv(self) -> str:
         """A row a design."""
-        names, columns = [*(f"power_{group}_W" for group in GROUPS), *VARIED], [*self.power.T, *self.x.T]
-        if self.fluctuation is not None:
-            names, columns = [*names, "fluctuation"], [*columns, self.fluctuation]
-        return csv_text(dict(zip(names, columns, strict=True)))
+        powers = {f"power_{group}_W": column for group, column in zip(GROUPS, self.power.T, strict=True)}
+        return csv_text(powers | dict(zip(VARIED, self.x.T, strict=True)) | self._smooth)
 
     @property
     def columns(self) -> tuple[str, ...]:
         """Of `rows`."""
-        smooth = () if self.fluctuation is None else (FLUCTUATION,)
-        return ("design", *(f"{group}, W" for group in GROUPS), *smooth)
+        return ("design", *(f"{group}, W" for group in GROUPS), *(FLUCTUATION for _ in self._smooth))
 
     @property
     def rows(self) -> list[tuple[str, ...]]:
         """Some designs all along the front: number, powers and, if it was an objective, fluctuation, as text."""
-        rows = []
-        for number in self._shown:
-            cells = (f"{number}", *(f"{power:.2f}" for power in self.power[number]))
-            rows.append(cells if self.fluctuation is None else (*cells, f"{self.fluctuation[number]:.3f}"))
-        return rows
+        smooth = [[f"{value:.3f}" for value in column] for column in self._smooth.values()]
+        powers = [[f"{power:.2f}" for power in column] for column in self.power.T]
+        return [(f"{row}", *(column[row] for column in (*powers, *smooth))) for row in self._shown]
 
     @property
     def title(self) -> str:
         """How many of the designs stand in `rows`."""
         return f"{len(self._shown)} of {len(self.x)} designs"
+
+    @property
+    def _smooth(self) -> dict[str, FloatArray]:
+        """The column of the fluctuation, if it was an objective."""
+        return {} if self.fluctuation is None else {"fluctuation": self.fluctuation}
 
     @property
     def _shown(self) -> IntArray:

@@ -108,9 +108,8 @@ class Problem:
     @property
     def motion(self) -> tuple[Constraint, ...]:
         """Constraints on the turn."""
-        return motion_constraints(
-            self.limits, self.joint_speed, self.gear_ratios, self.ripple.limit if self.ripple else None
-        )
+        ripple = self.ripple.limit if self.ripple else None
+        return motion_constraints(self.limits, self.joint_speed, self.gear_ratios, ripple)
 
     @property
     def gear_ratios(self) -> tuple[float, float]:
@@ -185,13 +184,13 @@ class Problem:
         return Evaluation(filled, power, values, margins(self.constraints, values), scales)
 
     def merit(self, evaluation: Evaluation) -> FloatArray:
-        """What is maximised, shape (n,): W if feasible; every infeasible design ranks below, by its violation."""
-        return np.where(evaluation.feasible, self.objective(evaluation.power), INFEASIBLE - evaluation.violation)
+        """What is maximised, W, shape (n,); every infeasible design ranks below, by its violation.
 
-    def objective(self, power: FloatArray) -> FloatArray:
-        """Power of the first set of moments less `caution` standard deviations of the gain over the baseline, W."""
-        gain = power - self.baseline
-        return power[:, 0] - self.caution * np.linalg.norm(gain[:, 1:], axis=1) if self.caution else power[:, 0]
+        Power of the first set of moments less `caution` standard deviations of the gain over the baseline.
+        """
+        power = evaluation.power
+        doubt = self.caution * np.linalg.norm((power - self.baseline)[:, 1:], axis=1) if self.caution else 0.0
+        return np.where(evaluation.feasible, power[:, 0] - doubt, INFEASIBLE - evaluation.violation)
 
     def violations(self, evaluation: Evaluation, row: int = 0) -> list[dict[str, Any]]:
         """The violated constraints of one design: name, value, limit, unit and margin."""
@@ -207,8 +206,8 @@ class Problem:
         if evaluation.feasible[0]:
             return ""
         parts = (
-            f"{v['name']} is {v['value']:.4g} {v['unit']}".rstrip() + f" (limit {v['limit']:.4g})"
-            for v in self.violations(evaluation)
+            f"{row['name']} is {row['value']:.4g} {row['unit']}".rstrip() + f" (limit {row['limit']:.4g})"
+            for row in self.violations(evaluation)
         )
         return ", ".join(parts) or "the thigh swings through 180 deg or more"
 

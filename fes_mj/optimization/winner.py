@@ -36,11 +36,6 @@ class Gain(NamedTuple):
     mean: float
     deviation: float
 
-    @property
-    def beyond_error(self) -> bool:
-        """Whether the gain exceeds its error bar of one standard deviation."""
-        return self.mean > self.deviation
-
 
 def gain(power: FloatArray, baseline: FloatArray) -> Gain:
     """Gain of one design over another, both powers by the same work_table.uncertain_table, shape (sets,)."""
@@ -119,7 +114,7 @@ class Winner:
     def notes(self) -> list[str]:
         """What to beware of."""
         notes = []
-        if self.gain and self.gain.mean > 0 and not self.gain.beyond_error:
+        if self.gain and 0 < self.gain.mean <= self.gain.deviation:
             notes.append("the gain is within the error bar of the recovered moments; --caution 1 looks for a surer one")
         if self.reversals.knee > 2:
             notes.append("the knee swings more than once per turn of the crank; can the muscles follow?")
@@ -128,7 +123,8 @@ class Winner:
     @property
     def rows(self) -> list[tuple[str, str]]:
         """What was found out, as text."""
-        static, run, uneven = self.case.static, self.case.simulation, self.smoothness
+        static, run = self.case.static, self.case.simulation
+        lowest, highest, swing, _ = self.smoothness.values()
         cells = [
             ("mean crank power by statics, W", f"{static.power_mean:.3f}"),
             ("mean crank power simulated, W", f"{run.power_mean:.3f}"),
@@ -136,17 +132,13 @@ class Winner:
             ("work per turn, J", f"{static.work_per_turn:.3f}"),
             ("cadence, rpm", f"{static.summary()['cadence_rpm']:.1f}"),
             *((f"mean {joint} speed, deg/s", f"{speed:.1f}") for joint, speed in self.joint_speed.items()),
-            (
-                "simulated power of one leg, lowest to highest, W",
-                f"{uneven['power_lowest_W']:+.0f} to {uneven['power_highest_W']:+.0f}",
-            ),
-            ("the same, peak to peak, W", f"{uneven['power_peak_to_peak_W']:.0f}"),
+            ("simulated power of one leg, lowest to highest, W", f"{lowest:+.0f} to {highest:+.0f}"),
+            ("the same, peak to peak, W", f"{swing:.0f}"),
             ("ripple of the crank speed, two legs, fixed gear, %", f"{100 * self.ripple:.1f}"),
             ("reversals of knee and hip in a turn", f"{self.reversals.knee}, {self.reversals.hip}"),
         ]
         if self.gain:
-            gain = f"{self.gain.mean:+.2f} ± {self.gain.deviation:.2f}"
-            cells.append((f"gain over {self.compared_with.name}, W", gain))
+            cells.append((f"gain over {self.compared_with.name}, W", "{:+.2f} ± {:.2f}".format(*self.gain)))
         for name, tolerance in (("lengths ±1 mm", self.manufacturing), ("thigh, shank ±5 cm", self.rider)):
             cells.append((f"{name}: can turn", f"{100 * tolerance.turning:.1f} %"))
             cells.append((f"{name}: 5th percentile of power, W", f"{tolerance.power_low:.2f}"))

@@ -18,6 +18,7 @@ from fes_mj.moments.joint_moments import GROUPS
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.moments.uncertainty import instant_power_weights
 from fes_mj.paper.budget_figure import budget_figure
+from fes_mj.paper.evidence import DIRECTIONS
 from fes_mj.paper.known import BASES, Known, rms
 from fes_mj.paper.printed import SIX_BARS
 from fes_mj.paper.reconstruction import Posterior
@@ -143,13 +144,13 @@ def scores(runs: Runs) -> Figure:
     figure, axes = _grid(1, 2, (7.2, 3.4))
     for number, (ax, title) in enumerate(zip(axes.flat, BASES, strict=True)):
         for group, marker, colour in zip(GROUPS, "os", ("knee", "hip"), strict=True):
-            rows = [left for left in runs.known.predictions if left.row.group == group]
-            values = np.array([left.scores[number] for left in rows])
+            rows = [out for out in runs.known.predictions if out.row.group == group]
+            values = np.array([out.scores[number] for out in rows])
             label = f"{group.upper()}, rms {rms(values):.2f}"
             ax.plot(values, range(len(rows)), marker, color=COLOURS[colour], label=label)
         for sd in (1, 2):
             ax.axvspan(-sd, sd, color="0.5", alpha=0.12, lw=0)
-        names = [left.row.design.upper() + " and 15 W" * (left.title != "itself") for left in rows]
+        names = [out.row.design.upper() + " and 15 W" * (out.title != "itself") for out in rows]
         ax.set(yticks=range(len(names)), yticklabels=names, xlim=(-3, 3), ylim=(len(names) + 0.8, -0.5))
         ax.axvline(0, color="black", lw=0.7)
         ax.set_title(title, loc="left", fontsize=9, weight="bold")
@@ -157,16 +158,6 @@ def scores(runs: Runs) -> Figure:
         ax.label_outer()
         ax.legend(loc="lower center", ncols=2)
     return figure
-
-
-def who_can_ride(runs: Runs) -> Figure:
-    """Power over the thighs and shanks of people, with the seat as drawn and moved."""
-    return population_figure([*runs.people.values()])
-
-
-def error_budget(runs: Runs) -> Figure:
-    """Who is to blame for the error of each power, and how probable each gain is."""
-    return budget_figure(runs.budgets)
 
 
 def riding(runs: Runs) -> Figure:
@@ -206,9 +197,9 @@ FIGURES: dict[str, Callable[[Runs], Figure]] = {
     "figure-13-d1-to-scale": d1_to_scale,
     "smoothness-with-masses": smoothness,
     "scores": scores,
-    "who-can-ride": who_can_ride,
+    "who-can-ride": lambda runs: population_figure([*runs.people.values()]),
     "riding": riding,
-    "error-budget": error_budget,
+    "error-budget": lambda runs: budget_figure(runs.budgets),
 }
 
 
@@ -250,13 +241,13 @@ def _maps(ax: Axes, posterior: Posterior, ranges: Iterable[tuple[str, tuple[floa
     """Moment over joint angle within the given ranges (rad), with the jumps that close them."""
     for joint, (low, high) in ranges:
         angle = np.linspace(low, high, 150)
-        branches = {}
-        for name, sign, style in (("extension", 1.0, "-"), ("flexion", -1.0, "--")):
+        branches = []
+        for (name, sign), style in zip(DIRECTIONS.items(), ("-", "--"), strict=True):
             curve = posterior.curve(joint, PAPER_TRICYCLE.source_angle(joint, angle, sign))
             _band(ax, np.degrees(angle), curve, joint, f"{joint}, {name}", style)
-            branches[name] = curve[0]
+            branches.append(curve[0])
         for end in (0, -1):
-            jump = [branches["extension"][end], branches["flexion"][end]]
+            jump = [branch[end] for branch in branches]
             ax.plot([np.degrees(angle[end])] * 2, jump, ":", color=COLOURS[joint], lw=1)
 
 
@@ -280,8 +271,8 @@ def _powers(axes: Any, runs: Runs, name: str) -> None:
         _band(ax, angle, (both[0], both[1]), "quasi-static", "both, quasi-static")
         mean_power, deviation = posterior.predict(static.power_weights)
         _turn(ax, f"{name.upper()}, {group.upper()}, {title}: {mean_power:.1f} ± {deviation:.1f} W")
-    for simulated, residual, group in zip(*axes[1:], GROUPS, strict=True):
-        _simulated(simulated, residual, runs.dynamic[name, group, 1])
+    for ax, residual, group in zip(*axes[1:], GROUPS, strict=True):
+        _simulated(ax, residual, runs.dynamic[name, group, 1])
         _turn(residual, "", "residual, W")
 
 

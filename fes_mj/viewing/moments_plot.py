@@ -64,12 +64,8 @@ def _over_crank(axes: Axes, measurement: Measurement) -> None:
             textcoords="offset points", va="top", ha="left" if right else "right", fontsize=8, color=FAINT,
         )  # fmt: skip
     axes.axhline(0, color="black", lw=0.7)
-    axes.set(
-        xlim=(0, 360),
-        xticks=range(0, 361, 60),
-        xlabel="crank angle from top dead centre, deg",
-        ylabel="joint moment, N m",
-    )
+    axes.set(xlim=(0, 360), xticks=range(0, 361, 60))
+    axes.set(xlabel="crank angle from top dead centre, deg", ylabel="joint moment, N m")
     low, high = axes.get_ylim()
     axes.set_ylim(low, high + 0.25 * (high - low))  # room for what is written above the curves
 
@@ -79,13 +75,8 @@ def _over_joint(axes: Axes, measurement: Measurement, joint: str) -> None:
     torque = torque_map(measurement.moments)
     angle = np.linspace(*torque.reference.ranges[joint], 200)
     for label, rate, style in (("extending", 1.0, "-"), ("flexing", -1.0, "--")):
-        axes.plot(
-            np.degrees(angle),
-            torque.at_source(joint, torque.source_angle(joint, angle, rate)),
-            style,
-            color=COLOURS[joint],
-            label=label,
-        )
+        moment = torque.at_source(joint, torque.source_angle(joint, angle, rate))
+        axes.plot(np.degrees(angle), moment, style, color=COLOURS[joint], label=label)
     axes.axhline(0, color="black", lw=0.7)
     axes.set(xlabel=f"{joint} angle, deg")
     axes.set_title(joint, loc="left")

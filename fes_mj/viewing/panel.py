@@ -69,19 +69,11 @@ def _fit(figure: Figure, y: float, text: str, size: float, **look: Any) -> None:
     line.set_fontsize(size * min(1.0, (_RIGHT - _LEFT) / width))
 
 
-class PowerPanel:
-    """Crank power over the turn, dynamic and static."""
-
-    def __init__(self, case: Case, width: int, height: int) -> None:
-        run = case.simulation
-        steps = len(run.crank_angle) // run.turns
-        self._angle = np.degrees(run.crank_angle[:steps]) % 360
-        self._power = run.power[:steps]
-        self._panel = Panel(width, height, lambda figure: [_draw_power(figure, case)])
-
-    def frame(self, step: int) -> Picture:
-        """The panel with the cursor at a step of the turn, shape (height, width, 3)."""
-        return self._panel.with_cursor(self._angle[step], self._power[step], COLOURS["mujoco"])
+def power_panel(case: Case, width: int, height: int) -> Callable[[int], Picture]:
+    """Crank power over the turn, dynamic and static: step of the turn -> the panel with the cursor there."""
+    run, panel = case.simulation, Panel(width, height, lambda figure: [_draw_power(figure, case)])
+    angle = np.degrees(run.crank_angle) % 360
+    return lambda step: panel.with_cursor(angle[step], run.power[step], COLOURS["mujoco"])
 
 
 def _draw_power(figure: Figure, case: Case) -> Axes:
@@ -91,19 +83,8 @@ def _draw_power(figure: Figure, case: Case) -> Axes:
     mean = len(run.legs) * run.power_mean
     axes.axhline(mean, color=COLOURS["mujoco"], lw=1, ls=":", label=f"mean of MuJoCo, {mean:.1f} W")
     axes.legend(loc="lower left", bbox_to_anchor=(-0.02, 1.0), fontsize=11)
-    write_title(
-        figure,
-        run.design,
-        f"joint moments {run.moments.name.upper()}, {run.cadence / RPM:.1f} rpm, "
-        f"{'one leg' if len(run.legs) == 1 else 'two legs'}",
-    )
-    _write_turn(figure, case)
-    return axes
-
-
-def _write_turn(figure: Figure, case: Case) -> None:
-    """The numbers and the verdict below the curves."""
-    run = case.simulation
+    legs = "one leg" if len(run.legs) == 1 else "two legs"
+    write_title(figure, run.design, f"joint moments {run.moments.name.upper()}, {run.cadence / RPM:.1f} rpm, {legs}")
     facts = (
         ("mean power, MuJoCo", f"{run.power_mean:.3f} W a leg", COLOURS["mujoco"]),
         ("mean power, quasi-static", f"{case.statics.power_mean:.3f} W a leg", COLOURS["quasi-static"]),
@@ -114,6 +95,7 @@ def _write_turn(figure: Figure, case: Case) -> None:
         figure.text(0.14, 0.165 - 0.034 * row, name, size=12, color=colour)
         figure.text(0.95, 0.165 - 0.034 * row, value, size=12, color=colour, ha="right", family="DejaVu Sans")
     write_verdict(figure, verdict(case), case.agrees)
+    return axes
 
 
 def verdict(case: Case) -> str:
@@ -124,50 +106,33 @@ def verdict(case: Case) -> str:
     return f"mean power agrees: difference {case.difference_text}"
 
 
-class RidePanel:
-    """Speed and muscle power over time by both solvers."""
-
-    def __init__(self, case: RideCase, end: float, width: int, height: int) -> None:
-        """end: s, until which the ride is shown."""
-        self._time = case.simulation.trace.time
-        self._panel = Panel(width, height, lambda figure: _draw_ride(figure, case, end))
-
-    def frame(self, step: int) -> Picture:
-        """The panel with the cursor at a step of the ride, shape (height, width, 3)."""
-        return self._panel.with_cursor(self._time[step])
+def ride_panel(case: RideCase, end: float, width: int, height: int) -> Callable[[int], Picture]:
+    """Speed and muscle power by both solvers until `end`, s: step of the ride -> the panel with the cursor there."""
+    time, panel = case.simulation.trace.time, Panel(width, height, lambda figure: _draw_ride(figure, case, end))
+    return lambda step: panel.with_cursor(time[step])
 
 
 def _draw_ride(figure: Figure, case: RideCase, end: float) -> list[Axes]:
     speed, power = (figure.add_axes((0.14, bottom, 0.81, 0.30)) for bottom in (0.53, 0.14))
-    _plot(case, end, speed, power)
-    _write_ride(figure, case)
-    return [speed, power]
-
-
-def _plot(case: RideCase, end: float, speed: Axes, power: Axes) -> None:
     looks = (
         ("reduced model", case.reference, COLOURS["reference"], 4, 0.45),
         ("MuJoCo", case.simulation.trace, COLOURS["mujoco"], 1.5, 1.0),
     )
     grid = np.arange(0, end, _SMOOTH)
     for label, trace, colour, width, alpha in looks:
+        look: dict[str, Any] = {"color": colour, "lw": width, "alpha": alpha}
+        speed.plot(grid, np.interp(grid, trace.time, trace.speed) / KMH, label=label, **look)
         work = np.interp(grid, trace.time, trace.muscle_work)
-        speed.plot(
-            grid, np.interp(grid, trace.time, trace.speed) / KMH, color=colour, lw=width, alpha=alpha, label=label
-        )
-        power.plot(grid[:-1] + _SMOOTH / 2, np.diff(work) / _SMOOTH, color=colour, lw=width, alpha=alpha)
+        power.plot(grid[:-1] + _SMOOTH / 2, np.diff(work) / _SMOOTH, **look)
     speed.set(xlim=(0, end), ylabel="tricycle, km/h")
     power.set(xlim=(0, end), ylabel="muscles, W", xlabel="time, s")
     power.axhline(0, color="black", lw=0.8)
     speed.legend(loc="lower left", bbox_to_anchor=(-0.02, 1.0), fontsize=11, ncols=2)
-
-
-def _write_ride(figure: Figure, case: RideCase) -> None:
-    """Title above and the verdict below the curves."""
     ride, trace = case.ride, case.simulation.trace
     road = f"joint moments {ride.moments.name.upper()}, {ride.transmission}, {100 * ride.road.slope:.3g} % slope"
     write_title(figure, ride.design, road)
-    speed = trace.mean_speed
-    end = f"rides, {(speed or 0) / KMH:.1f} km/h at the end" if trace.rides else f"stops after {trace.stopped_at:.1f} s"
-    verdict = "the two solvers agree" if case.agrees else "the two solvers DO NOT agree"
-    write_verdict(figure, f"{end}; {verdict}", case.agrees)
+    speed_text = f"rides, {(trace.mean_speed or 0) / KMH:.1f} km/h at the end"
+    agreement = f"the two solvers {'agree' if case.agrees else 'DO NOT agree'}"
+    result = speed_text if trace.rides else f"stops after {trace.stopped_at:.1f} s"
+    write_verdict(figure, f"{result}; {agreement}", case.agrees)
+    return [speed, power]

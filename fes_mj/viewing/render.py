@@ -66,14 +66,14 @@ def render_video(case: Case | RideCase, path: Path, speed: float | None = None, 
 
 def pictures(case: Case, steps: IntArray, speed: float) -> Iterator[Picture]:
     """The frames at these steps of the first turn, shape (SIDE, SIDE + PLOT_WIDTH, 3)."""
-    from fes_mj.viewing.panel import PowerPanel
+    from fes_mj.viewing.panel import power_panel
 
-    run, panel = case.simulation, PowerPanel(case, PLOT_WIDTH, SIDE)
+    run, panel = case.simulation, power_panel(case, PLOT_WIDTH, SIDE)
     spec = build_mjcf(run.design, cadence=run.cadence, timestep=run.timestep, legs=len(run.legs))
     with stage(spec, run.design, speed, len(run.legs)) as scene:
         for step in steps:
             pose = {name: angle[step] for name, angle in run.joint_angle.items()}
-            yield np.hstack([scene.picture(pose), panel.frame(int(step))])
+            yield np.hstack([scene.picture(pose), panel(int(step))])
 
 
 def require_video() -> None:
@@ -106,11 +106,7 @@ def write_video(path: Path, frames: Iterable[Picture], count: int, quiet: bool =
                     advance(1)
             copy = ["-v", "error", "-y", "-stream_loop", str(repeats - 1), "-i", str(once), "-c", "copy", str(beside)]
             subprocess.run([encoder.get_ffmpeg_exe(), *copy], check=True, capture_output=True, text=True)
-        except (
-            RuntimeError,
-            BrokenPipeError,
-            subprocess.CalledProcessError,
-        ) as error:  # it ended, with words or without
+        except (RuntimeError, BrokenPipeError, subprocess.CalledProcessError) as error:  # with words or without
             said = error.stderr if isinstance(error, subprocess.CalledProcessError) else str(error)
             reason = said.strip().rpartition("] ")[2].strip()
             raise InputError(f"{path}: cannot be written: the encoder stopped: {reason}") from None
@@ -118,15 +114,15 @@ def write_video(path: Path, frames: Iterable[Picture], count: int, quiet: bool =
 
 def _ride_pictures(case: RideCase, steps: IntArray, end: float) -> Iterator[Picture]:
     """The frames at these steps of a ride that is shown until `end`, s; in true time."""
-    from fes_mj.viewing.panel import RidePanel
+    from fes_mj.viewing.panel import ride_panel
 
-    run, panel = case.simulation, RidePanel(case, end, PLOT_WIDTH, SIDE)
+    run, panel = case.simulation, ride_panel(case, end, PLOT_WIDTH, SIDE)
     spec = build_road_mjcf(run.ride, run.timestep)
     _add_road(spec, run)
     with stage(spec, run.ride.design, speed=1.0, legs=2, road=_DISTANCE) as scene:
         for step in steps:
             pose = {name: run.sensors[f"{name}_angle"][step] for name in run.sensors.joints}
-            yield np.hstack([scene.picture(pose, run.trace.distance[step]), panel.frame(int(step))])
+            yield np.hstack([scene.picture(pose, run.trace.distance[step]), panel(int(step))])
 
 
 def _add_road(spec: Spec, run: RoadRun) -> None:

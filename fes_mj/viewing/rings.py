@@ -57,14 +57,10 @@ def _rings(axes: Any, design: Design, windows: Sequence[Window]) -> None:
         place = list(MUSCLES).index(window.muscle)
         colour, height = SERIES[place], _INNER + _RING * place
         core = window.core[0] - window.lead, window.core[1] - window.lead
-        for (start, end), bottom, shade in (
-            (window.works, height, 0.25),
-            (window.core, height, 0.55),
-            (core, height + _WIDTH, 1.0),
-        ):
-            axes.bar(
-                (start + end) / 2, _WIDTH, width=end - start, bottom=bottom, color=colour, alpha=shade, lw=0, zorder=2
-            )
+        look = {"color": colour, "lw": 0, "zorder": 2}
+        bands = ((window.works, height, 0.25), (window.core, height, 0.55), (core, height + _WIDTH, 1.0))
+        for (start, end), bottom, shade in bands:
+            axes.bar((start + end) / 2, _WIDTH, width=end - start, bottom=bottom, alpha=shade, **look)
     top = turning(design).top_dead_centre
     axes.plot([top, top], [0, _INNER + 3 * _RING], color=INK, lw=1, ls=(0, (4, 2)), zorder=3)
     axes.text(top, 0.1, "TDC", ha="center", va="center", fontsize=8, color=INK, backgroundcolor="white", zorder=4)
@@ -86,12 +82,9 @@ def starts_svg(starts: Starts) -> str:
         axes.grid(visible=False)
         launch = "no launch helps" if starts.launch is None else f"launch needed: {starts.launch / KMH:.1f} km/h"
         slope = "climbs nothing" if starts.slope is None else f"climbs {100 * starts.slope:.1f} %"
-        for height, text, colour in (
-            (0.12, f"starts from {100 * starts.share:.0f} %", INK),
-            (0, launch, FAINT),
-            (-0.12, slope, FAINT),
-        ):
-            axes.text(0.5, 0.5 + height, text, ha="center", va="center", color=colour, transform=axes.transAxes)
+        lines = ((0.62, f"starts from {100 * starts.share:.0f} %", INK), (0.5, launch, FAINT), (0.38, slope, FAINT))
+        for height, text, colour in lines:
+            axes.text(0.5, height, text, ha="center", va="center", color=colour, transform=axes.transAxes)
         title = f"{ride.design.name}, {ride.moments.name}, {ride.transmission}, {100 * ride.road.slope:g} %"
         figure.text(0.5, 0.94, literal(title), ha="center", size=11, weight="bold")
         return f"<!-- Written by fes_mj: starts from rest -->\n{svg_text(figure)}"
