@@ -1,21 +1,27 @@
 """Everything that the page can ask for: a question and what it says in, what is shown out. No browser, no network."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, TypeVar
 
+from fes_mj.common.checks import Check
+from fes_mj.common.console import number
 from fes_mj.common.errors import InputError
 from fes_mj.common.style import COLOURS, SERIES
-from fes_mj.common.text import printable
+from fes_mj.common.text import printable, typeset
+from fes_mj.common.units import KMH
+from fes_mj.crosscheck.ride_case import RideCase
+from fes_mj.crosscheck.turn_case import Case
 from fes_mj.explore.dimensions import content_of, design_of, dimensions
-from fes_mj.explore.runs import ridden, simulated
 from fes_mj.explore.turn import turn
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.design_file import DESIGNS, design_toml, load_design
 from fes_mj.linkage.legs import LEGS
 from fes_mj.moments.files import load_moments
 from fes_mj.moments.joint_moments import GROUPS, JointMoments
+from fes_mj.moments.torque_velocity import load_torque_velocity
+from fes_mj.riding.ride import Ride
 from fes_mj.simulation.export import mjcf_text
 from fes_mj.simulation.mjcf import build_mjcf
 
@@ -91,7 +97,7 @@ class Answers:
         return {
             "name": moments.name,
             "moments": [*self.moments],
-            "warnings": [each.text for each in moments.misreadings],
+            "warnings": [misreading.text for misreading in moments.misreadings],
         }
 
     def _moments(self, question: dict[str, Any]) -> JointMoments:
@@ -120,3 +126,38 @@ def _read(question: dict[str, Any], load: Callable[[str], Loaded]) -> Loaded:
             return load(str(path))
         except InputError as error:
             raise InputError(str(error).replace(f"{path.parent}/", "")) from None
+
+
+def simulated(design: Design, moments: JointMoments, legs: int) -> dict[str, Any]:
+    """As `fes_mj simulate`: the verdict in a sentence, and every check. Raises what Case raises."""
+    case = Case(design, moments, legs=legs)
+    power = (
+        f"mean power {case.simulation.power_mean:.2f} W against {case.statics.power_mean:.2f} W, {case.difference_text}"
+    )
+    return _outcome("Dynamic and static", power, case.checks)
+
+
+def ridden(design: Design, moments: JointMoments) -> dict[str, Any]:
+    """As `fes_mj ride` on the flat, in the same form. Raises what RideCase raises."""
+    case = RideCase(Ride(design, moments.at_speed(load_torque_velocity("hill"))))
+    trace = case.simulation.trace
+    result = f"it stops after {trace.stopped_at:.1f} s" if trace.stopped_at is not None else "it rides"
+    if trace.mean_speed is not None:
+        result += f", {trace.mean_speed / KMH:.2f} km/h at the end"
+    return _outcome("The two solvers", result, case.checks)
+
+
+def _outcome(who: str, result: str, checks: Sequence[Check]) -> dict[str, Any]:
+    """Of checks that hold together or not; the page shows `verdict` and a table."""
+    failed = ", ".join(check.name for check in checks if not check.ok)
+    verdict = f"{who} do not agree ({failed}): {result}." if failed else f"{who} agree: {result}."
+    rows = [
+        {
+            "name": check.name.replace("_", " "),
+            "value": number(check.value, check.unit),
+            "limit": number(check.limit, check.unit),
+            "ok": bool(check.ok),
+        }
+        for check in checks
+    ]
+    return {"agrees": not failed, "verdict": typeset(verdict), "checks": rows}

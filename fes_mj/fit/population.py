@@ -72,17 +72,12 @@ class PopulationFit(Brief):
         content: dict[str, Any] = {"design": self.design.name, "group": self.moments.name, "samples": size}
         for seat in SEATS:
             powers = {who: getattr(riders, seat) for who, riders in self.riders.items()}
-            content[f"share_{seat}"] = {who: float(np.mean(np.isfinite(power))) for who, power in powers.items()}
-            content[f"power_mean_{seat}_W"] = {who: _of_riding(np.mean, power) for who, power in powers.items()}
-            content[f"power_p10_{seat}_W"] = {
-                who: _of_riding(lambda riding: np.percentile(riding, 10), power) for who, power in powers.items()
-            }
+            riding = {who: power[np.isfinite(power)] for who, power in powers.items()}
+            content[f"share_{seat}"] = {who: len(power) / size for who, power in riding.items()}
+            for name, statistic in (("mean", np.mean), ("p10", lambda power: np.percentile(power, 10))):
+                values = {who: float(statistic(power)) if len(power) else None for who, power in riding.items()}
+                content[f"power_{name}_{seat}_W"] = values
         return content | {"map_error_W": self.map_error}
-
-
-def _of_riding(statistic: Callable[[FloatArray], Any], power: FloatArray) -> float | None:
-    riding = power[np.isfinite(power)]
-    return float(statistic(riding)) if riding.size else None
 
 
 STEPS = _NODES + len(PEOPLE)  # how often fit_population calls `done`

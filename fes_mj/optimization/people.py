@@ -87,10 +87,6 @@ def sampled(statistic: str, samples: int, seed: int) -> People:
     drawn = [populations()[who].sample(samples, random) for who in PEOPLE.values()]
     legs = np.hstack([(people.thigh, people.shank) for people in drawn]).T
     riders, _ = kmeans2(legs, RIDERS, minit="++", rng=random)
-    middle = legs.mean(axis=0)
-    plane = _with_one(legs - middle) @ np.linalg.pinv(_with_one(riders - middle))
+    sample, chosen = (np.insert(lengths - legs.mean(axis=0), 0, 1.0, axis=1) for lengths in (legs, riders))
+    plane = sample @ np.linalg.pinv(chosen)
     return People(riders, np.column_stack([np.zeros(len(legs)), plane]), statistic)
-
-
-def _with_one(legs: FloatArray) -> FloatArray:
-    return np.column_stack([np.ones(len(legs)), legs])

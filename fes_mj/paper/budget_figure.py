@@ -19,18 +19,14 @@ def budget_figure(budgets: Budgets) -> Figure:
     """Shares of the variance as stacked bars; below, the probability that the power per the TRT's is above a ratio."""
     figure = Figure(figsize=(7.2, 7.0), layout="constrained")
     axes: Any = figure.subplots(2, 2, sharey="row")
-    for ax, group in zip(axes[0], GROUPS, strict=True):
-        _bars(ax, budgets, group)
-        ax.set_title(f"{group.upper()}, everything drawn", loc="left", fontsize=9, weight="bold")
-    axes[0, 0].set_ylabel("share of the variance, %")
-    axes[0, 1].legend(loc="center left", bbox_to_anchor=(1.0, 0.5), reverse=True)
-    for ax, group in zip(axes[1], GROUPS, strict=True):
-        _curves(ax, budgets, group)
-        ax.set_title(f"{group.upper()}, power per TRT's", loc="left", fontsize=9, weight="bold")
-        ax.set(xlabel="ratio", xlim=(0.2, 2.8), ylim=(0, 103), xticks=_TICKS)
-        ax.set_xticklabels([f"{tick:g}" for tick in _TICKS], fontsize=7)
-    axes[1, 0].set_ylabel("probability of more, %")
-    axes[1, 1].legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
+    for (bars, curves), group in zip(axes.T, GROUPS, strict=True):
+        _bars(bars, budgets, group)
+        _curves(curves, budgets, group)
+        for ax, title in ((bars, "everything drawn"), (curves, "power per TRT's")):
+            ax.set_title(f"{group.upper()}, {title}", loc="left", fontsize=9, weight="bold")
+    for (first, last), what in zip(axes, ("share of the variance, %", "probability of more, %"), strict=True):
+        first.set_ylabel(what)
+        last.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), reverse=last is axes[0, 1])
     return figure
 
 
@@ -54,5 +50,7 @@ def _curves(ax: Axes, budgets: Budgets, group: str) -> None:
             ratio = np.sort(np.nan_to_num(ratios(budgets, name, group, case), nan=-np.inf))  # beats nothing
             above = 100 * (1 - np.searchsorted(ratio, _RATIOS, side="right") / ratio.size)
             ax.plot(_RATIOS, above, style, color=colour, label=f"{name.upper()}, {words}")
+    ax.set(xlabel="ratio", xlim=(0.2, 2.8), ylim=(0, 103), xticks=_TICKS)
+    ax.set_xticklabels([f"{tick:g}" for tick in _TICKS], fontsize=7)
     for gain in GAINS:
         ax.axvline(gain, color="black", lw=0.7, ls=":")

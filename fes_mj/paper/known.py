@@ -49,15 +49,10 @@ class LeftOut(NamedTuple):
     numbers: tuple[float, float]
     text: tuple[float, float]
 
-    def score(self, prediction: tuple[float, float]) -> float:
-        """By how many standard deviations of prediction and print together it is off."""
-        mean, deviation = prediction
-        return float((mean - self.row.value) / np.hypot(deviation, self.row.error))
-
     @property
-    def scores(self) -> tuple[float, float]:
-        """By the numbers alone, and with the text."""
-        return self.score(self.numbers), self.score(self.text)
+    def scores(self) -> list[float]:
+        """By how many standard deviations of prediction and print together each is off."""
+        return [float((mean - self.row.value) / np.hypot(sd, self.row.error)) for mean, sd in (self.numbers, self.text)]
 
 
 @dataclass(frozen=True, eq=False)

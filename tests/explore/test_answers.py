@@ -75,7 +75,7 @@ def test_simulate_says_what_the_command_says(answers: Answers) -> None:
 
 
 def test_ride_says_what_the_command_says(answers: Answers, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("fes_mj.explore.runs.Ride", partial(Ride, duration=4.0))
+    monkeypatch.setattr("fes_mj.explore.answers.Ride", partial(Ride, duration=4.0))
     moments = fes_mj.load_moments().at_speed(load_torque_velocity("hill"))
     case = RideCase(Ride(fes_mj.load_design("d1"), moments, duration=4.0))
     run = answers.ride({"design": D1, "moments": "p1p2"})
