@@ -1,12 +1,10 @@
 """`fes_mj fit`: the seat for a rider, and who of a population can ride."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import Annotated, Any, Literal
 
 from cyclopts import Group, Parameter
 from cyclopts.validators import Number, all_or_none, mutually_exclusive
@@ -29,6 +27,7 @@ from fes_mj.common.console import conclude, print_table, progress_bar, say
 from fes_mj.common.errors import InputError, require_extra
 from fes_mj.common.text import printable
 from fes_mj.common.writing import replacing, require_writable, write_text
+from fes_mj.fit.population import STEPS, PopulationFit, fit_population
 from fes_mj.fit.seat import SeatFit, SeatLimits, fit_seat, seat_text
 from fes_mj.linkage.design import Design, Rider
 from fes_mj.linkage.design_file import design_toml, load_design
@@ -110,9 +109,6 @@ class SeatOptions:
         return SeatLimits(self.forward, self.up, (math.radians(self.recline[0]), math.radians(self.recline[1])))
 
 
-if TYPE_CHECKING:
-    from fes_mj.fit.population import PopulationFit
-
 _MOMENTS, _PRINT, _RIDER, _SEAT = MomentsOptions(), PrintOptions(), RiderOptions(), SeatOptions()
 _POPULATION = Group("Population", validator=needs("--population"))
 
@@ -163,8 +159,6 @@ def fit(
         if plot:
             require_extra("report", "matplotlib")
         require_writable(plot, "the picture", ".png", inputs)
-        from fes_mj.fit.population import STEPS, fit_population
-
         with progress_bar(f"{loaded.name}, riders", STEPS, options.silent) as advance:
             people = fit_population(
                 loaded, joint_moments, limits=limits, samples=samples, seed=seed, done=lambda: advance(1)

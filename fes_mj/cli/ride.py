@@ -19,10 +19,10 @@ from fes_mj.common.writing import json_text, require_results, require_writable, 
 from fes_mj.linkage.design import TRICYCLE_SPEED
 from fes_mj.linkage.design_file import load_design
 from fes_mj.moments.torque_velocity import load_torque_velocity
+from fes_mj.riding.ride import Ride, Road
 
 if TYPE_CHECKING:
     from fes_mj.crosscheck.ride_case import RideCase
-    from fes_mj.riding.ride import Ride
     from fes_mj.riding.starts import Starts
     from fes_mj.riding.trace import Trace
 
@@ -84,8 +84,6 @@ class RideOptions(PrintOptions, MomentsOptions):
             moments = moments.at_speed(load_torque_velocity("hill"))
         if self.lag:
             moments.require_cadence("with a lag")
-        from fes_mj.riding.ride import Ride, Road
-
         launch = TRICYCLE_SPEED if self.launch is None else self.launch * KMH
         return Ride(
             design,

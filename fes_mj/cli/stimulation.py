@@ -1,10 +1,8 @@
 """`fes_mj stimulation`: at which crank angles to stimulate which muscles."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 from cyclopts import Parameter
 
@@ -12,11 +10,9 @@ from fes_mj.cli.options import Cadence, DesignName, Dims, Lag, Legs, PrintOption
 from fes_mj.common.console import print_table, say
 from fes_mj.common.errors import require_extra
 from fes_mj.common.writing import PICTURES, require_writable, write_text
+from fes_mj.linkage.design import Design
 from fes_mj.linkage.design_file import load_design
-
-if TYPE_CHECKING:
-    from fes_mj.linkage.design import Design
-    from fes_mj.riding.stimulation import Window
+from fes_mj.riding.stimulation import CORE, ZERO, Window, stimulation as find_windows, summary, table_csv
 
 _DEFAULTS = PrintOptions()
 
@@ -57,8 +53,6 @@ def stimulation(
     require_writable(plot, "the plot", PICTURES, inputs)
     if plot:
         require_extra("report", "matplotlib")
-    from fes_mj.riding.stimulation import stimulation as find_windows, summary, table_csv
-
     windows = [window for window in find_windows(loaded, cadences, lag) if window.leg == "right" or legs == 2]
     if plot:
         from fes_mj.viewing.rings import write_windows
@@ -71,22 +65,17 @@ def stimulation(
 
 
 def _print(design: Design, windows: list[Window]) -> None:
-    from fes_mj.riding.stimulation import CORE, ZERO
-
-    rows = []
-    for window in windows:
-        if window.leg == "right":
-            record = window.record(design)
-            rows.append(
-                (
-                    f"{window.muscle} ({record['moment']})",
-                    f"{record['cadence_rpm']:.1f} ({record['cadence_Hz']:.2f} Hz)",
-                    f"{_span(record['works_deg'])} ({record['width_deg']:.0f})",
-                    _span(record["stimulate_deg"]),
-                    _span(record["stimulate_from_tdc_deg"]),
-                    f"{_span(record['stimulate_core_deg'])} ({record['core_width_deg']:.0f})",
-                )
-            )
+    rows = [
+        (
+            f"{record['muscle']} ({record['moment']})",
+            f"{record['cadence_rpm']:.1f} ({record['cadence_Hz']:.2f} Hz)",
+            f"{_span(record['works_deg'])} ({record['width_deg']:.0f})",
+            _span(record["stimulate_deg"]),
+            _span(record["stimulate_from_tdc_deg"]),
+            f"{_span(record['stimulate_core_deg'])} ({record['core_width_deg']:.0f})",
+        )
+        for record in (window.record(design) for window in windows if window.leg == "right")
+    ]
     lead = ", ".join(f"{degrees:.1f}" for degrees in dict.fromkeys(math.degrees(window.lead) for window in windows))
     title = f"{design.name}, right leg; crank angles in deg, lag {windows[0].lag:g} s = {lead} deg of crank"
     columns = ("muscle", "cadence, rpm", "works (width)", "stimulate", "from top dead centre", "core of it (width)")

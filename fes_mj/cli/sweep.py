@@ -10,11 +10,11 @@ from urllib.parse import urlsplit
 from fes_mj.cli.options import Cadence, Jobs, Out, PrintOptions, warn_of
 from fes_mj.common.console import print_table, progress_bar
 from fes_mj.common.errors import InputError, require_extra
+from fes_mj.common.parallel import Workers
 from fes_mj.common.writing import make_folder, require_writable
+from fes_mj.sweep.study import Study, label, load_study
 
 if TYPE_CHECKING:
-    from fes_mj.common.parallel import Workers
-    from fes_mj.sweep.study import Study
     from fes_mj.sweep.sweep import Sweep
 
 _DEFAULTS = PrintOptions()
@@ -52,8 +52,6 @@ def sweep(
     plot
         Where one or two numbers vary, draw the mean crank power over them: a picture (.png).
     """
-    from fes_mj.common.parallel import Workers
-    from fes_mj.sweep.study import load_study
     from fes_mj.sweep.sweep import Sweep
 
     workers = Workers(jobs if jobs is not None else os.cpu_count() or 1, cluster)
@@ -78,7 +76,7 @@ def sweep(
     return 0
 
 
-def _run(sweep: "Sweep", workers: "Workers", name: str, silent: bool) -> dict[str, Any]:
+def _run(sweep: "Sweep", workers: Workers, name: str, silent: bool) -> dict[str, Any]:
     """Evaluate what is missing; the result as JSON names and units it."""
     sweep.claim()
     finished = sweep.finished()
@@ -108,7 +106,7 @@ def _require_address(cluster: str) -> None:
         )
 
 
-def _require_plottable(study: "Study", path: Path) -> None:
+def _require_plottable(study: Study, path: Path) -> None:
     """Raise InputError unless --plot can show the study, MissingPartError without matplotlib."""
     require_extra("report", "matplotlib")
     numbers, names = study.varied_numbers, [axis for axis in study.varied if axis not in study.varied_numbers]
@@ -121,7 +119,7 @@ def _require_plottable(study: "Study", path: Path) -> None:
         raise InputError(f"--plot: {path} has {study.points:,} points; at most {MOST_PLOTTED:,} are drawn")
 
 
-def _print(summary: dict[str, Any], name: str, study: "Study") -> None:
+def _print(summary: dict[str, Any], name: str, study: Study) -> None:
     cells = [
         ("points", f"{summary['points']:,}"),
         ("already finished", f"{summary['found_finished']:,}"),
@@ -133,10 +131,8 @@ def _print(summary: dict[str, Any], name: str, study: "Study") -> None:
         _print_top(summary["top"], study)
 
 
-def _print_top(rows: Sequence[dict[str, Any]], study: "Study") -> None:
+def _print_top(rows: Sequence[dict[str, Any]], study: Study) -> None:
     """The best points, with what varies among all."""
-    from fes_mj.sweep.study import label
-
     columns = {"point": "point"} | {axis: label(axis) for axis in study.varied}
     columns |= {"power_mean_W": "power, W", "power_sd_W": "+-, W", "simulated_power_mean_W": "simulated, W"}
     columns |= {"extrapolated_share": "extrapolated, %"}

@@ -1,25 +1,19 @@
 """What several commands print of a turn and of checks."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
+from rich.text import Text
 
+from fes_mj.common.arrays import ComplexArray
+from fes_mj.common.checks import Check
 from fes_mj.common.console import conclude, number, print_table, say, verdict
 from fes_mj.common.units import RPM
+from fes_mj.linkage.design import Design
+from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.statics.joint_forces import NET_FORCE, JointForces, KneeLoad, peaks
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from rich.text import Text
-
-    from fes_mj.common.arrays import ComplexArray
-    from fes_mj.common.checks import Check
-    from fes_mj.linkage.design import Design
-    from fes_mj.moments.joint_moments import JointMoments
-    from fes_mj.statics.turn import QuasiStatic
+from fes_mj.statics.turn import QuasiStatic
 
 
 def heading(result: QuasiStatic, legs: int = 1) -> str:
