@@ -13,6 +13,7 @@ from fes_mj.common.console import errors, print_table, progress_bar, say
 from fes_mj.common.text import printable
 from fes_mj.common.writing import require_replaceable, require_writable, write_files, write_text
 from fes_mj.linkage.design_file import design_toml, load_design
+from fes_mj.viewing.pages import require_page_packages
 
 if TYPE_CHECKING:
     from fes_mj.optimization.findings import Findings
@@ -109,8 +110,6 @@ def _check_files(out: Path | None, report: Path | None, options: SearchOptions) 
         require_replaceable([path], f"the {key.partition('_')[0]}", inputs)
     require_writable(report, "the page", ".html", inputs)
     if report:
-        from fes_mj.viewing.pages import require_page_packages
-
         require_page_packages()
 
 

@@ -18,6 +18,7 @@ from fes_mj.common.provenance import provenance
 from fes_mj.common.writing import require_writable, write_text
 from fes_mj.linkage.design_file import DESIGNS, design_path
 from fes_mj.statics.extrapolation import turning_in_range
+from fes_mj.viewing.pages import require_page_packages
 
 if TYPE_CHECKING:
     from fes_mj.verification.case import VerificationCase
@@ -117,8 +118,6 @@ def _check_files(report: Path | None, junit: Path | None, video: Path | None, in
     require_writable(report, "the report", ".html", inputs)
     require_writable(junit, "the JUnit file", ".xml", inputs)
     if report:
-        from fes_mj.viewing.pages import require_page_packages
-
         require_page_packages()
     if video and not (video.is_file() and video.suffix.lower() == ".mp4"):
         raise InputError(f"{video}: cannot read the video; it must be an .mp4 file, as `simulate --render` writes it")

@@ -125,7 +125,8 @@ def build_mjcf(
     crank.add_site(name="crank_torque")
     state = {"crank": (0.0, cadence)}
     for leg in pair:
-        start = _start_state(design, leg, cadence)
+        joints = joint_motion(kinematics.solve(design, np.array([-leg.lag])))
+        start = {joint: (float(angle[0]), cadence * float(rate[0])) for joint, (angle, rate, _) in joints.items()}
         _add_leg(spec, root, design, leg, masses, start, options.anchors)
         state |= {leg.prefix + joint: values for joint, values in start.items()}
     if options.drawn:
@@ -151,12 +152,6 @@ def joint_motion(motion: Motion) -> dict[str, tuple[Any, Any, Any]]:
         joints["rocker"] = (np.angle(rocker), *rotation["rocker"])
         joints["coupler"] = (np.angle(coupler / rocker), *(rotation["coupler"] - rotation["rocker"]))
     return joints
-
-
-def _start_state(design: Design, leg: Leg, cadence: float) -> dict[str, tuple[float, float]]:
-    """Angle (rad) and speed (rad/s) of every joint of a leg but the crank, at crank angle 0."""
-    joints = joint_motion(kinematics.solve(design, np.array([-leg.lag])))
-    return {joint: (float(angle[0]), cadence * float(rate[0])) for joint, (angle, rate, _) in joints.items()}
 
 
 def _turned(inertia: Inertia, angle: float) -> Inertia:

@@ -86,7 +86,7 @@ def _static(design: Design, values: Columns, moments: JointMoments, count: int) 
     turn = cycles(batch, WorkTable.of(moments) if certain else uncertain_table(moments))
     rpm = values.get("cadence_rpm", np.ravel(batch.linkage.cadence) / RPM)
     turns_per_s = turns_per_second(rpm * RPM)
-    why = _first_reason(_obstacles(turn, rpm), count)
+    why = _reasons(turn, rpm, count)
     work = np.where((why == "")[:, None], turn.work, np.nan)
     power = work * np.reshape(turns_per_s, (-1, 1))
     deviation = np.hypot(np.linalg.norm(power[:, 1:], axis=1), turn.outside_sd * turns_per_s)
@@ -123,21 +123,16 @@ def _characteristics(design: Design, values: Columns, moments: JointMoments, sta
     return result
 
 
-def _obstacles(turn: Cycles, rpm: NDArray[Any]) -> list[Obstacle]:
-    """Why `fes_mj static` refuses a design."""
+def _reasons(turn: Cycles, rpm: NDArray[Any], count: int) -> NDArray[np.object_]:
+    """Why `fes_mj static` refuses each of the points: the first reason that holds, "" if none does, shape (count,)."""
     never = [
         Obstacle(f"the {joint} never enters the range of the moments", never_inside)
         for joint, never_inside in turn.outside[1].items()
     ]
     low, high = VARIABLES["cadence_rpm"].low, VARIABLES["cadence_rpm"].high
     out_of_bounds = Obstacle(f"its cadence is not within {low:g} to {high:g} rpm", (rpm < low) | (rpm > high))
-    return [*turn.turning.obstacles, *never, out_of_bounds]
-
-
-def _first_reason(obstacles: list[Obstacle], count: int) -> NDArray[np.object_]:
-    """The first reason that holds for each of the points, "" where none does, shape (count,)."""
     why = np.full(count, "", object)
-    for reason, hindered in reversed(obstacles):
+    for reason, hindered in reversed([*turn.turning.obstacles, *never, out_of_bounds]):
         why[np.broadcast_to(hindered, count)] = reason
     return why
 
