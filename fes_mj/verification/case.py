@@ -47,15 +47,7 @@ class VerificationCase(Case):
     @cached_property
     def two_legs(self) -> Case:
         """The same with two legs half a turn apart on one crank."""
-        return Case(
-            self.design,
-            self.moments,
-            self.cadence,
-            self.timestep,
-            legs=2,
-            label=f"{self.name}, two legs",
-            pipeline=self.pipeline,
-        )
+        return replace(self, legs=2, turns=1, label=f"{self.name}, two legs")
 
     @cached_property
     def rides(self) -> list[RideCase]:

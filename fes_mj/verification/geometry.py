@@ -5,6 +5,7 @@ And is it what its design file says, read once more without the reader and measu
 
 import math
 import tomllib
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -26,16 +27,14 @@ DEGREES = ("gamma", "seat_angle")  # keys of a design file that are angles
 WHEEL, SPEED = 0.66, 5.71 / 3.6  # m, m/s: of Eq. 16, not the reader's
 
 
-def geometry_checks(case: Case) -> list[Check]:
+def geometry_checks(case: Case) -> Iterator[Check]:
     """Closure, branch and rates of one case."""
     motion = case.steps.motion(np.linspace(0, 2 * np.pi, SAMPLES, endpoint=False))
     first, second = rate_errors(motion)
-    return [
-        case.check("loop_closure", closure_error(motion)),
-        case.check("assembly_mode", wrong_branch(motion)),
-        case.check("rates", first),
-        case.check("second_rates", second),
-    ]
+    yield case.check("loop_closure", closure_error(motion))
+    yield case.check("assembly_mode", wrong_branch(motion))
+    yield case.check("rates", first)
+    yield case.check("second_rates", second)
 
 
 def closure_error(motion: Motion) -> float:
@@ -80,9 +79,10 @@ def _relative_error(value: Any, reference: Any) -> float:
     return float(np.abs(value - reference).max() / max(np.abs(value).max(), np.abs(reference).max()))
 
 
-def file_checks(case: VerificationCase) -> list[Check]:
+def file_checks(case: VerificationCase) -> Iterator[Check]:
     """Every dimension that the case's design file gives; nothing for a design that is in no file."""
-    return [case.check("design_file", file_error(case.file, case.steps.motion(POSES)))] if case.file else []
+    if case.file:
+        yield case.check("design_file", file_error(case.file, case.steps.motion(POSES)))
 
 
 def file_error(path: Path, motion: Motion) -> float:

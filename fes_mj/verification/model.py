@@ -1,6 +1,7 @@
 """The torque map and the MuJoCo model before anything moves: do they say what they were told?"""
 
 import math
+from collections.abc import Iterator
 
 import mujoco
 import numpy as np
@@ -21,7 +22,7 @@ FIELDS = (
 )
 
 
-def map_checks(case: Case) -> list[Check]:
+def map_checks(case: Case) -> Iterator[Check]:
     """The torque map on the tricycle it was made from, and its two implementations against each other."""
     motion, spread = case.steps.motion(np.linspace(0, 2 * np.pi, 360, endpoint=False)), 0.0
     for joint in JOINTS:
@@ -29,7 +30,8 @@ def map_checks(case: Case) -> list[Check]:
         scalar, array = case.steps.torque.feedback(joint), case.steps.torque.moment(joint, angle, rate)
         values = [scalar(*pair) for pair in zip(angle.tolist(), rate.tolist(), strict=True)]
         spread = max(spread, float(np.abs(values - array).max()))
-    return [case.check("torque_map", map_error(case)), case.check("map_feedback", spread)]
+    yield case.check("torque_map", map_error(case))
+    yield case.check("map_feedback", spread)
 
 
 def map_error(case: Case) -> float:
@@ -40,7 +42,7 @@ def map_error(case: Case) -> float:
     return max(float(np.abs(mapped[joint] - given[joint]).max()) for joint in JOINTS)
 
 
-def model_checks(case: Case) -> list[Check]:
+def model_checks(case: Case) -> Iterator[Check]:
     """The compiled model at its keyframe, and the file written of it."""
     model = case.steps.spec().compile()
     data = mujoco.MjData(model)
@@ -50,12 +52,10 @@ def model_checks(case: Case) -> list[Check]:
     cuts = [cut for cut in CUTS if cut in case.design.linkage.architecture.joints]
     closed = np.sum(loops) == 3 * len(cuts)  # three equations a pin, or there is nothing to measure
     speeds = data.efc_J.reshape(-1, model.nv)[loops] @ data.qvel
-    return [
-        case.check("keyframe", np.abs(data.efc_pos[loops]).max() if closed else math.inf),
-        case.check("keyframe_speed", np.abs(speeds).max() if closed else math.inf),
-        case.check("planarity", tilt(data)),
-        case.check("model_file", file_difference(case)),
-    ]
+    yield case.check("keyframe", np.abs(data.efc_pos[loops]).max() if closed else math.inf)
+    yield case.check("keyframe_speed", np.abs(speeds).max() if closed else math.inf)
+    yield case.check("planarity", tilt(data))
+    yield case.check("model_file", file_difference(case))
 
 
 def tilt(data: mujoco.MjData) -> float:

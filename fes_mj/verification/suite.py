@@ -18,23 +18,21 @@ from fes_mj.verification.problems import chain_checks, four_bar_checks
 from fes_mj.verification.references import exact_checks
 
 
-def turn_checks(case: VerificationCase) -> list[Check]:
+def turn_checks(case: VerificationCase) -> Iterator[Check]:
     """One simulated turn: the cross-check, and an audited second run of the same model beside it."""
     run, ledger = case.simulation, case.audit
     apart = ledger.crank_moment - ledger.servo_moment
     advance = float(run.crank_speed.sum() * run.timestep)
     work = case.power_scale * 2 * math.pi * run.turns / case.cadence
     count = min(len(ledger.crank_moment), len(run.crank_moment))
-    return [
-        case.check("stability", 0),
-        *case.checks,
-        case.check("whole_turns", abs(advance - 2 * math.pi * run.turns)),
-        case.check("sensor_servo", np.sqrt(np.mean(apart**2)) / servo_rounding(case.cadence)),
-        case.check("pairing", np.abs(ledger.crank_moment[:count] - run.crank_moment[:count]).max()),
-        case.check("energy_audit", abs(ledger.integration) / work),
-        case.check("constraint_work", abs(ledger.constraint_work) / work),
-        case.check("passive_work", abs(ledger.damping) / work),
-    ]
+    yield case.check("stability", 0)
+    yield from case.checks
+    yield case.check("whole_turns", abs(advance - 2 * math.pi * run.turns))
+    yield case.check("sensor_servo", np.sqrt(np.mean(apart**2)) / servo_rounding(case.cadence))
+    yield case.check("pairing", np.abs(ledger.crank_moment[:count] - run.crank_moment[:count]).max())
+    yield case.check("energy_audit", abs(ledger.integration) / work)
+    yield case.check("constraint_work", abs(ledger.constraint_work) / work)
+    yield case.check("passive_work", abs(ledger.damping) / work)
 
 
 def servo_rounding(cadence: float) -> float:
@@ -42,44 +40,42 @@ def servo_rounding(cadence: float) -> float:
     return SERVO_GAIN * cadence * float(np.finfo(float).eps)
 
 
-def two_leg_checks(case: VerificationCase) -> list[Check]:
+def two_leg_checks(case: VerificationCase) -> Iterator[Check]:
     """The cross-check with two legs half a turn apart on one crank."""
-    return [*case.two_legs.checks]
+    yield from case.two_legs.checks
 
 
-def refinement_checks(case: VerificationCase) -> list[Check]:
+def refinement_checks(case: VerificationCase) -> Iterator[Check]:
     """Orders, floor, uncertainty and what is left at a step of zero."""
     result = case.refinement
-    return [
-        case.check("gap_order", abs(result.gap_order - 2)),
-        case.check("power_order", abs(result.power_order - 2)),
-        case.check("softness_order", 1 - result.softness_order),
-        case.check("softness_floor", result.softness_floor),
-        case.check("finest_work", abs(result.steps[-1].work_error)),
-        case.check("extrapolated_work", abs(result.extrapolated)),
-        case.check("power_uncertainty", result.uncertainty),
-    ]
+    yield case.check("gap_order", abs(result.gap_order - 2))
+    yield case.check("power_order", abs(result.power_order - 2))
+    yield case.check("softness_order", 1 - result.softness_order)
+    yield case.check("softness_floor", result.softness_floor)
+    yield case.check("finest_work", abs(result.steps[-1].work_error))
+    yield case.check("extrapolated_work", abs(result.extrapolated))
+    yield case.check("power_uncertainty", result.uncertainty)
 
 
-def printed_checks(case: VerificationCase) -> list[Check]:
+def printed_checks(case: VerificationCase) -> Iterator[Check]:
     """A design of the paper against Table 1: joint ranges and, for the paper's moments, power."""
     printed = case.expected
     if printed is None:
-        return []
+        return
     wanted = np.array([*printed.knee_range, *printed.hip_range])
-    checks = [case.check("joint_range", np.abs(joint_ranges(case.design) - wanted).max())]
+    yield case.check("joint_range", np.abs(joint_ranges(case.design) - wanted).max())
     if case.moments.name in printed.power and case.moments.torque_velocity is None:  # the paper knows no speed
         power = case.static.work_per_turn * turns_per_second(case.design.linkage.cadence)  # printed at its own cadence
-        checks.append(case.check("printed_power", abs(power - printed.power[case.moments.name])))
-    return checks
+        yield case.check("printed_power", abs(power - printed.power[case.moments.name]))
 
 
-def ride_checks(case: VerificationCase) -> list[Check]:
+def ride_checks(case: VerificationCase) -> Iterator[Check]:
     """A short ride with either transmission, by both solvers."""
-    return [check for ride in case.rides for check in ride.checks]
+    for ride in case.rides:
+        yield from ride.checks
 
 
-CheckGroup: TypeAlias = Callable[[VerificationCase], list[Check]]
+CheckGroup: TypeAlias = Callable[[VerificationCase], Iterator[Check]]
 QUICK: tuple[CheckGroup, ...] = (
     *(geometry_checks, file_checks, map_checks, exact_checks, model_checks, turn_checks),
     printed_checks,
@@ -91,16 +87,18 @@ BENCHMARKS = {"A02": chain_checks, "four-bar": four_bar_checks}
 def verify(case: VerificationCase, groups: tuple[CheckGroup, ...] = QUICK) -> Iterator[Check]:
     """Run the checks of a case, group by group. Raises AssemblyError if its linkage does not close."""
     for group in groups:
-        try:
-            yield from group(case)
-        except UnstableError:
-            yield case.check("stability", math.inf)
+        yield from _stable(group(case), case.name)
 
 
 def benchmarks() -> Iterator[Check]:
     """Run the published problems, which do not depend on a case."""
     for subject, run in BENCHMARKS.items():
-        try:
-            yield from run(subject)
-        except UnstableError:
-            yield check("stability", math.inf, subject)
+        yield from _stable(run(subject), subject)
+
+
+def _stable(group: Iterator[Check], subject: str) -> list[Check]:
+    """All checks of a group or, where a simulation breaks down, that alone."""
+    try:
+        return list(group)
+    except UnstableError:
+        return [check("stability", math.inf, subject)]

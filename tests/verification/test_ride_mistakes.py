@@ -25,7 +25,7 @@ FAULTS = [fault for fault in faults() if fault.ride_steps]
 )
 def test_the_guard_notices_by_far(source: str) -> None:
     case = case_of(source)
-    checks = ride_checks(case)
+    checks = [*ride_checks(case)]
     assert [check for check in checks if not check.ok] == []
     baseline = {check.name: True for check in checks}
     for fault in FAULTS:
