@@ -125,7 +125,7 @@ class RideEnv(gymnasium.Env[NDArray[np.float64], NDArray[Any]]):
         for (leg, name), active, strength in zip(CHANNELS, self.activation, self.strength, strict=True):
             joint, sense = MUSCLES[name]
             speed = sense * float(self.data.joint(f"{leg}_{joint}").qvel[0])
-            factor = self.relation.float_factor(joint, speed) if self.relation else 1.0
+            factor = self.relation.factor(joint, speed) if self.relation else 1.0
             self.data.actuator(f"{leg}_{joint}").ctrl += sense * active * strength * factor
         return float(self.activation.mean())
 

@@ -58,28 +58,16 @@ def print_table(title: str, columns: Sequence[str], rows: Iterable[Sequence[str 
 @contextmanager
 def progress_bar(what: str, total: int, silent: bool = False, done: int = 0) -> Iterator[Callable[[int], None]]:
     """A bar on standard error with rate and time left; call what it gives with the number of steps just made."""
-    from rich.progress import (
-        BarColumn,
-        MofNCompleteColumn,
-        Progress,
-        ProgressColumn,
-        Task,
-        TextColumn,
-        TimeRemainingColumn,
-    )
+    from rich import progress
 
-    class Rate(ProgressColumn):
-        def render(self, task: Task) -> Text:
+    class Rate(progress.ProgressColumn):
+        def render(self, task: progress.Task) -> Text:
             return Text(f"{task.speed:,.3g}/s" if task.speed else "")
 
-    columns = (
-        TextColumn("{task.description}", markup=False),
-        BarColumn(),
-        MofNCompleteColumn(),
-        Rate(),
-        TimeRemainingColumn(),
-    )
-    with Progress(*columns, console=errors, transient=True, disable=silent or not errors.is_terminal) as bars:
+    what_and_bar = (progress.TextColumn("{task.description}", markup=False), progress.BarColumn())
+    columns = (*what_and_bar, progress.MofNCompleteColumn(), Rate(), progress.TimeRemainingColumn())
+    hidden = silent or not errors.is_terminal
+    with progress.Progress(*columns, console=errors, transient=True, disable=hidden) as bars:
         task = bars.add_task(printable(what), total=total, completed=done)
         yield lambda steps: bars.update(task, advance=steps)
 

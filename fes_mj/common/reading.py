@@ -4,7 +4,7 @@ import csv
 import json
 import math
 import tomllib
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NoReturn
@@ -68,46 +68,40 @@ class Section:
             if key not in self.content:
                 raise InputError(f"{self.path}: {self.label(key)} is missing; {needs}")
 
+    def value(self, key: str, default: Any, fits: Callable[[Any], bool], allowed: str) -> Any:
+        """What stands at a key, or `default` where nothing does, refused unless it fits."""
+        value = self.content.get(key, default)
+        if not fits(value):
+            self.refuse(key, value, allowed)
+        return value
+
     def section(self, key: str) -> "Section":
         """A table below this one, empty if it is not there."""
-        value = self.content.get(key, {})
-        if not isinstance(value, dict):
-            self.refuse(key, value, f"a table [{self.label(key)}]")
-        return Section(self.path, self.label(key), value)
+        name = self.label(key)
+        return Section(self.path, name, self.value(key, {}, lambda value: isinstance(value, dict), f"a table [{name}]"))
 
     def choice(self, key: str, options: Iterable[str], default: str | None = None) -> str:
         """One of some words."""
-        value, known = self.content.get(key, default), [*options]
-        if not isinstance(value, str) or value not in known:
-            self.refuse(key, value, f"one of {', '.join(known)}")
-        return value
+        known = [*options]
+        word: str = self.value(key, default, lambda value: value in known, f"one of {', '.join(known)}")
+        return word
 
     def switch(self, key: str) -> bool:
         """True or false, false where it is not said."""
-        value = self.content.get(key, False)
-        if not isinstance(value, bool):
-            self.refuse(key, value, "true or false")
-        return value
+        return bool(self.value(key, False, lambda value: isinstance(value, bool), "true or false"))
 
     def whole(self, key: str, default: int) -> int:
         """A whole number from 1."""
-        value = self.content.get(key, default)
-        if isinstance(value, bool) or not isinstance(value, int) or value < 1:
-            self.refuse(key, value, "a whole number from 1")
-        return value
+        return int(self.value(key, default, lambda value: type(value) is int and value >= 1, "a whole number from 1"))
 
     def number(self, key: str, low: float = -math.inf, high: float = math.inf, allowed: str = "a number") -> float:
         """A finite number within bounds."""
-        value = self.content[key]
-        if not (is_number(value) and math.isfinite(value) and low <= value <= high):
-            self.refuse(key, value, allowed)
+        value = self.value(key, None, lambda x: is_number(x) and math.isfinite(x) and low <= x <= high, allowed)
         return float(value)
 
     def ascending_pair(self, key: str, low: float = -math.inf, high: float = math.inf) -> tuple[float, float]:
         """[lowest, highest], both finite and within bounds."""
-        value = self.content[key]
-        if not (isinstance(value, list) and len(value) == 2 and all(is_number(part) for part in value)):
-            self.refuse(key, value, "[lowest, highest]")
+        value = self.value(key, None, lambda value: is_list(value, is_number, 2), "[lowest, highest]")
         for part in value:
             if not (math.isfinite(part) and low <= part <= high):
                 self.refuse(key, part, "a number" if low == -math.inf else f"from {low:g} to {high:g}")
@@ -124,6 +118,16 @@ def is_number(value: object) -> bool:
     if isinstance(value, int) and not isinstance(value, bool):
         return abs(value) < 10**300
     return isinstance(value, float)
+
+
+def is_list(value: object, fits: Callable[[Any], bool], count: int | None = None) -> bool:
+    """Whether a TOML value is a list whose values all fit, so many where that is said."""
+    return isinstance(value, list) and count in (None, len(value)) and all(map(fits, value))
+
+
+def is_text(value: object) -> bool:
+    """Whether a TOML value is a text."""
+    return isinstance(value, str)
 
 
 def read_toml(path: Path, what: str) -> Section:

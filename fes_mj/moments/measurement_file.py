@@ -1,11 +1,13 @@
 """Measurement files (TOML): what the columns of a file of joint moments mean, and on what they were measured."""
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 from fes_mj.common.errors import AssemblyError, InputError
-from fes_mj.common.reading import Section, read_toml
+from fes_mj.common.reading import Section, is_list, is_text, read_toml
 from fes_mj.common.units import RPM
 from fes_mj.linkage.design_file import read_rider, read_values
 from fes_mj.linkage.joints import JOINTS, PerJoint
@@ -80,46 +82,39 @@ class Description:
 
 def _paths(section: Section, key: str) -> list[Path]:
     """One file name or a list of them, looked for beside the measurement file."""
-    value = section.content.get(key, [])
-    names = value if isinstance(value, list) else [value]
-    if not all(isinstance(name, str) and name and "\0" not in name for name in names) or (
-        value == [] and key == "file"
-    ):
-        section.refuse(key, value, "the name of a file, or a list of such names")
-    return [section.path.parent / name for name in names]
+
+    def fits(value: Any) -> bool:
+        names = value if isinstance(value, list) else [value]
+        return bool(names or key != "file") and is_list(names, lambda name: is_text(name) and name and "\0" not in name)
+
+    value = section.value(key, [], fits, "the name of a file, or a list of such names")
+    return [section.path.parent / name for name in (value if isinstance(value, list) else [value])]
 
 
 def _word(section: Section, key: str, default: str) -> str:
-    value = section.content.get(key, default)
-    if not isinstance(value, str):
-        section.refuse(key, value, "the name of a column")
-    return value
+    return str(section.value(key, default, is_text, "the name of a column"))
 
 
 def _pedal_force(section: Section) -> list[str]:
     """The columns of pedal_force; empty where the file holds moments."""
-    value = section.content.get("pedal_force", [])
-    if value == []:
-        return []
-    if not (isinstance(value, list) and len(value) == 2 and all(isinstance(name, str) for name in value)):
-        section.refuse("pedal_force", value, "the names of two columns: force on the pedal along x and y, N")
-    for key in _OF_MOMENTS:
+    allowed = "the names of two columns: force on the pedal along x and y, N"
+    columns = section.value("pedal_force", [], lambda value: value == [] or is_list(value, is_text, 2), allowed)
+    if columns:
+        _exclude(section, _OF_MOMENTS, "pedal_force", "exclude each other: the file holds moments or pedal forces")
+    return [*columns]
+
+
+def _exclude(section: Section, keys: Iterable[str], other: str, why: str) -> None:
+    """Refuse keys that cannot stand beside another."""
+    for key in keys:
         if key in section.content:
-            raise InputError(
-                f"{section.path}: {section.label(key)} and {section.label('pedal_force')} exclude each other: "
-                "the file holds moments or pedal forces"
-            )
-    return [*value]
+            raise InputError(f"{section.path}: {section.label(key)} and {section.label(other)} {why}")
 
 
 def _only_by_knee(section: Section, data: list[Path], kinematics: list[Path]) -> None:
     """Refuse a trial whose crank angle is told twice, or whose files do not pair."""
-    for key in _OF_THE_CRANK:
-        if key in section.content:
-            raise InputError(
-                f"{section.path}: {section.label(key)} and {section.label('kinematics')} tell the crank angle in two "
-                "ways; with kinematics the knee tells it: leave out one of them"
-            )
+    twice = "tell the crank angle in two ways; with kinematics the knee tells it: leave out one of them"
+    _exclude(section, _OF_THE_CRANK, "kinematics", twice)
     if len(data) != len(kinematics):
         raise InputError(
             f"{section.path}: {section.label('file')} names {len(data)} and {section.label('kinematics')} "

@@ -62,5 +62,4 @@ def between(curve: Any, row: int, part: float) -> float:
 def delivered(response: Response, muscle: int, moment: float, rate: float) -> float:
     """Moment of a muscle whose moment at rest is `moment` (N m), at a joint speed in rad/s."""
     shortening = (rate if moment > 0 else -rate) / response.max_speed[muscle]
-    slow, lengthening = min(max(shortening, 0.0), 1.0), max(-shortening, 0.0)
-    return moment * float(_hill(response.curvature, response.eccentric_plateau, slow, lengthening))
+    return moment * float(_hill(response.curvature, response.eccentric_plateau, shortening))

@@ -73,7 +73,7 @@ class TorqueMap:
         if relation is None:
             return np.ones_like(sign)
         then = _interpolated(self.reference_speed[joint], source)
-        return relation.factor(joint, sign * rate) / relation.factor(joint, sign * then)
+        return np.asarray(relation.factor(joint, sign * rate) / relation.factor(joint, sign * then))
 
     def feedback(self, joint: str) -> Callable[[float, float], float]:
         """The same map for plain floats, (angle, rate) -> moment; twenty times faster for one value at a time."""
@@ -82,12 +82,12 @@ class TorqueMap:
         mapped = partial(lookup, where, self.table[joint].tolist())
         if relation is None:
             return mapped
-        then, factor = partial(lookup, where, self.reference_speed[joint].tolist()), relation.float_factor
+        then, factor = partial(lookup, where, self.reference_speed[joint].tolist()), relation.factor
 
         def moment(angle: float, rate: float) -> float:
             measured = mapped(angle, rate)
             sign = math.copysign(1.0, measured)
-            return measured * factor(joint, sign * rate) / factor(joint, sign * then(angle, rate))
+            return float(measured * factor(joint, sign * rate) / factor(joint, sign * then(angle, rate)))
 
         return moment
 

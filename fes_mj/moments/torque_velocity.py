@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from fes_mj.common.arrays import FloatArray
 from fes_mj.common.reading import DATA, read_toml
 from fes_mj.linkage.joints import JOINTS
 
@@ -28,17 +27,9 @@ class TorqueVelocity:
     eccentric_plateau: float
     max_speed: dict[str, float]
 
-    def factor(self, joint: str, speed: Any) -> FloatArray:
-        """Moment per moment at rest; speed in rad/s along the moment, negative where it lengthens the muscle."""
-        relative = np.asarray(speed) / self.max_speed[joint]
-        shortening, lengthening = np.clip(relative, 0, 1), np.maximum(-relative, 0)
-        return np.asarray(hill_factor(self.curvature, self.eccentric_plateau, shortening, lengthening))
-
-    def float_factor(self, joint: str, speed: float) -> float:
-        """The same for a plain float, without numpy."""
-        relative = speed / self.max_speed[joint]
-        shortening, lengthening = min(max(relative, 0.0), 1.0), max(-relative, 0.0)
-        return float(hill_factor(self.curvature, self.eccentric_plateau, shortening, lengthening))
+    def factor(self, joint: str, speed: Any) -> Any:
+        """Moment per moment at rest; speed: rad/s along the moment, negative as the muscle lengthens."""
+        return hill_factor(self.curvature, self.eccentric_plateau, speed / self.max_speed[joint])
 
     def taken(self, rows: Any) -> "TorqueVelocity":
         """The relations of a batch at `rows` (an index array)."""
@@ -47,15 +38,16 @@ class TorqueVelocity:
         return replace(self, max_speed=speeds, **numbers)
 
 
-def hill_factor(curvature: float, eccentric_plateau: float, shortening: Any, lengthening: Any) -> Any:
-    """Hill (1938) while shortening, a hyperbola of the same slope at rest while lengthening.
+def hill_factor(curvature: float, eccentric_plateau: float, speed: Any) -> Any:
+    """Hill (1938) while shortening, a hyperbola of the same slope at rest while lengthening (negative speed).
 
-    Speeds are per the largest, not negative, and one of them is zero; shortening is at most 1.
+    speed: per the largest, beyond which nothing is left. For arrays, floats and machine code alike.
     """
+    shortening, lengthening = (abs(speed) + speed) / 2, (abs(speed) - speed) / 2
     excess = eccentric_plateau - 1
     steepness = (1 + 1 / curvature) / excess
     concentric = (1 - shortening) / (1 + shortening / curvature)
-    return concentric + excess * (1 - 1 / (1 + steepness * lengthening))
+    return (concentric + abs(concentric)) / 2 + excess * (1 - 1 / (1 + steepness * lengthening))
 
 
 # No dependence on speed, as a relation: muscles that are infinitely fast.

@@ -8,7 +8,7 @@ import numpy as np
 
 from fes_mj.common.arrays import ComplexArray, FloatArray
 from fes_mj.common.errors import InputError
-from fes_mj.common.reading import DATA, Section, is_number, read_toml
+from fes_mj.common.reading import DATA, Section, is_list, is_number, read_toml
 from fes_mj.linkage.assembly import LEAST_CLEARANCE, grashof_margin
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.joints import JOINTS, PerJoint
@@ -76,11 +76,9 @@ def load_limits(path: Path = DEFAULT) -> Limits:
 
 
 def _polygon(space: Section) -> ComplexArray:
-    value = space.content["polygon"]
-    points = value if isinstance(value, list) else [None]
-    if not all(isinstance(point, list) and len(point) == 2 and all(map(is_number, point)) for point in points):
-        space.refuse("polygon", value, "a list of vertices [x, y] in metres")
-    vertices = np.array([complex(x, y) for x, y in value])
+    allowed = "a list of vertices [x, y] in metres"
+    points = space.value("polygon", None, lambda value: is_list(value, lambda p: is_list(p, is_number, 2)), allowed)
+    vertices = np.array([complex(x, y) for x, y in points])
     area = abs(np.sum((np.conj(vertices) * np.roll(vertices, -1)).imag)) / 2
     if len(vertices) < 3 or not 1e-6 <= area < np.inf:
         raise InputError(

@@ -214,9 +214,8 @@ def _few(section: Section, key: str, count: int) -> int:
 def _sampled(sample: Section, size: int) -> dict[str, FloatArray]:
     """A Latin hypercube over the sample's ranges."""
     ranges = {name: _range(sample, name) for name in sample.content if name in COMPONENTS}
-    seed = sample.content.get("seed", 0)
-    if isinstance(seed, bool) or not isinstance(seed, int) or not 0 <= seed < 2**64:
-        sample.refuse("seed", seed, "a whole number from 0, below 2^64")
+    allowed = "a whole number from 0, below 2^64"
+    seed = sample.value("seed", 0, lambda value: type(value) is int and 0 <= value < 2**64, allowed)
     if not ranges:
         if size > 1:
             sample.refuse("size", size, "1 where no variable has a range; give one, as in R2 = [0.14, 0.18]")
