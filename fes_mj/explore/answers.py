@@ -38,15 +38,10 @@ class Answers:
     def __init__(self, design: Design, moments: JointMoments) -> None:
         self.design, self.chosen = design, moments.name
         self.moments = {group: load_moments(group) for group in GROUPS} | {moments.name: moments}
+        asked = (self.start, self.turn, self.save, self.model, self.simulate, self.ride)
+        questions = (*asked, self.open_design, self.open_moments)
         self.by_name: dict[str, Callable[[dict[str, Any]], dict[str, Any]]] = {
-            "start": self.start,
-            "turn": self.turn,
-            "save": self.save,
-            "model": self.model,
-            "simulate": self.simulate,
-            "ride": self.ride,
-            "open-design": self.open_design,
-            "open-moments": self.open_moments,
+            question.__name__.replace("_", "-"): question for question in questions
         }
 
     def start(self, _: dict[str, Any]) -> dict[str, Any]:

@@ -41,7 +41,7 @@ def design_of(content: Any) -> Design:
 
 def dimensions() -> list[dict[str, Any]]:
     """Every number of a design: its place in `content_of`, name, unit, bounds and slider, in the page's units."""
-    return [_dimension(name, each) for name, each in COMPONENTS.items() if each.variable.owner]
+    return [_dimension(name, part) for name, part in COMPONENTS.items() if part.variable.owner]
 
 
 def _dimension(name: str, component: Component) -> dict[str, Any]:

@@ -22,17 +22,17 @@ def ends(design: Design, crank_angle: FloatArray) -> Ends:
     """
     linkage, points = design.linkage, positions(design, crank_angle)
     hip, pin = points["hip"], points["crank_pin"]
-    found = {"crank": (np.broadcast_to(points["crank_centre"], pin.shape), pin)}
+    bodies = {"crank": (np.broadcast_to(points["crank_centre"], pin.shape), pin)}
     if "coupler" in linkage.architecture.bodies:
         pivot = points["rocker_pivot"]
         tip, origin = _apart(pivot, pin, linkage.rocker, linkage.coupler, points["rocker_joint"])
-        found |= {"rocker": (np.broadcast_to(pivot, pin.shape), tip), "coupler": (origin, pin)}
-    origin, tip = found[linkage.architecture.pedal_body]
+        bodies |= {"rocker": (np.broadcast_to(pivot, pin.shape), tip), "coupler": (origin, pin)}
+    origin, tip = bodies[linkage.architecture.pedal_body]
     pedal = origin + (tip - origin) * linkage.pedal_offset
     with np.errstate(invalid="ignore", divide="ignore"):
         knee = close_dyad(pedal, hip, design.knee_to_pedal, design.rider.thigh)
     above, below = _apart(hip, pedal, design.rider.thigh, design.knee_to_pedal, knee)
-    return found | {"thigh": (np.broadcast_to(hip, pin.shape), above), "shank": (below, pedal)}
+    return bodies | {"thigh": (np.broadcast_to(hip, pin.shape), above), "shank": (below, pedal)}
 
 
 def _apart(
@@ -53,10 +53,8 @@ def _apart(
 
 def failing_angle(design: Design) -> float | None:
     """Crank angle at which a linkage first lacks most to turn, rad; None if it closes all round."""
-    for each in clearances(design):
-        if not each.margin[0] >= LEAST_CLEARANCE:
-            return float(each.crank_angle[0])
-    return None
+    lacking = (clearance for clearance in clearances(design) if not clearance.margin[0] >= LEAST_CLEARANCE)
+    return next((float(clearance.crank_angle[0]) for clearance in lacking), None)
 
 
 def as_json(design: Design, crank_angle: FloatArray) -> dict[str, Any]:

@@ -34,7 +34,7 @@ def turn(design: Design, moments: Mapping[str, JointMoments], legs: int = 1) -> 
     """
     answer = pose.as_json(design, _ANGLES) | {"cadence_rpm": design.linkage.cadence / RPM}
     try:
-        solved = {name: quasi_static(design, each, points=POINTS) for name, each in moments.items()}
+        solved = {name: quasi_static(design, own, points=POINTS) for name, own in moments.items()}
     except InputError as error:
         return answer | {"error": str(error), "broken": broken(design, None)}
     first = next(iter(solved.values()))
@@ -42,7 +42,7 @@ def turn(design: Design, moments: Mapping[str, JointMoments], legs: int = 1) -> 
         "broken": broken(design, first),
         "numbers": _numbers(first),
         "joints": {joint: np.round(np.degrees(angle), DIGITS) for joint, angle in first.joint_angle.items()},
-        "moments": {name: _under(each, legs) for name, each in solved.items()},
+        "moments": {name: _under(static, legs) for name, static in solved.items()},
     }
 
 

@@ -59,7 +59,7 @@ def identify(
         error = np.nan_to_num(joint_ranges(design) - wanted, nan=180.0)
         return np.array([*(RANGE_TOLERANCE - error), *(RANGE_TOLERANCE + error), 100 * grashof_margin(design).item()])
 
-    random, best, fits = np.random.default_rng(_SEED), None, False
+    results, random = [], np.random.default_rng(_SEED)
     for trial in range(_STARTS):
         start = random.normal(0, 0.3, 9) if trial else np.zeros(9)
         result = minimize(
@@ -71,12 +71,10 @@ def identify(
             method="SLSQP",
             options={"maxiter": 200},
         )
-        feasible = bool(margins(result.x).min() > -1e-6)
-        if best is None or (feasible, -result.fun) > (fits, -best.fun):
-            best, fits = result, feasible
-    assert best is not None
-    design = candidate(best.x)
-    return Identification(design, LENGTH_ROUNDING * best.x, joint_ranges(design), fits)
+        results.append((bool(margins(result.x).min() > -1e-6), -result.fun, result.x))
+    feasible, _, best = max(results, key=lambda result: result[:2])
+    design = candidate(best)
+    return Identification(design, LENGTH_ROUNDING * best, joint_ranges(design), feasible)
 
 
 def range_misfit(printed: Design, target: Expected, seat_angle: float, coupler_angle: float) -> float:

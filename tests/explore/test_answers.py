@@ -71,7 +71,7 @@ def test_simulate_says_what_the_command_says(answers: Answers) -> None:
     run = answers.simulate({"design": D1, "moments": "p1p2"})
     assert run["agrees"]
     assert f"mean power {case.simulation.power_mean:.2f} W" in run["verdict"]
-    assert [each["ok"] for each in run["checks"]] == [each.ok for each in case.checks]
+    assert [row["ok"] for row in run["checks"]] == [check.ok for check in case.checks]
 
 
 def test_ride_says_what_the_command_says(answers: Answers, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -82,7 +82,7 @@ def test_ride_says_what_the_command_says(answers: Answers, monkeypatch: pytest.M
     assert run["agrees"] == case.agrees
     speed = case.simulation.trace.mean_speed
     assert speed is None or f"{speed / KMH:.2f} km/h at the end" in run["verdict"]
-    assert [each["ok"] for each in run["checks"]] == [each.ok for each in case.checks]
+    assert [row["ok"] for row in run["checks"]] == [check.ok for check in case.checks]
 
 
 def test_a_check_that_fails_is_named(answers: Answers, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -15,16 +15,16 @@ def test_there_and_back(design: Design) -> None:
 
 def test_every_dimension_has_its_place(design: Design) -> None:
     content, kind = content_of(design), design.linkage.kind
-    for each in dimensions():
-        if kind in each["kinds"]:
-            value = content[each["owner"]][each["symbol"]]
-            value = value if each["part"] is None else value[each["part"]]
-            assert value == pytest.approx(component(design, each["name"]), rel=1e-15)
-            assert each["low"] <= value * each["factor"] <= each["high"], each["name"]
+    for dimension in dimensions():
+        if kind in dimension["kinds"]:
+            value = content[dimension["owner"]][dimension["symbol"]]
+            value = value if dimension["part"] is None else value[dimension["part"]]
+            assert value == pytest.approx(component(design, dimension["name"]), rel=1e-15)
+            assert dimension["low"] <= value * dimension["factor"] <= dimension["high"], dimension["name"]
 
 
 def test_a_gear_ratio_within_its_bounds_can_be_run() -> None:
-    bounds = next(each for each in dimensions() if each["name"] == "gear_ratio")
+    bounds = next(dimension for dimension in dimensions() if dimension["name"] == "gear_ratio")
     content = content_of(fes_mj.load_design("d1"))
     for ratio, rpm in ((bounds["low"], 1), (bounds["high"], 200)):
         content["linkage"]["gear_ratio"] = ratio

@@ -161,7 +161,7 @@ def test_load_files(page: Page, tmp_path: Path) -> None:
 def test_limits_can_be_switched_off(page: Page) -> None:
     page.choose("#design", "r2")
     outside = page.page.locator("#numbers tr.outside")
-    assert [each.split("\t")[0] for each in outside.all_inner_texts()] == ["Grashof margin"]
+    assert [row.split("\t")[0] for row in outside.all_inner_texts()] == ["Grashof margin"]
     assert "the Grashof margin is 0.06 cm" in page.page.inner_text("#broken")
     page.page.click("#limits")
     assert outside.count() == 0
@@ -204,7 +204,9 @@ def test_on_a_phone_motion_and_power_stay_in_sight(page: Page) -> None:
     assert page.page.evaluate("document.documentElement.scrollWidth") == width
     row = page.page.locator(".dimension[data-name=R10]")
     row.evaluate("node => node.scrollIntoView({block: 'end'})")
-    scene, plot, box = (page.page.locator(each).bounding_box() for each in ("#scene", "#power-plot", "#number-R10"))
+    scene, plot, box = (
+        page.page.locator(selector).bounding_box() for selector in ("#scene", "#power-plot", "#number-R10")
+    )
     assert scene["y"] >= 0
     assert scene["y"] + scene["height"] <= plot["y"]
     assert plot["y"] + plot["height"] <= box["y"]  # nothing hides what is being moved

@@ -50,7 +50,7 @@ def test_an_impossible_linkage_is_open_by_what_its_links_lack(impossible: Design
     failing = failing_angle(impossible)
     assert failing is not None
     bodies = ends(impossible, np.array([failing]))
-    worst = next(each for each in clearances(impossible) if each.margin[0] < 0)
+    worst = next(clearance for clearance in clearances(impossible) if clearance.margin[0] < 0)
     first, second = worst.links
     gap = abs(complex(bodies[first][1][0] - bodies[second][0][0]))
     assert gap == pytest.approx(-float(worst.margin[0]), abs=1e-9)

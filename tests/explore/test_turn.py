@@ -21,7 +21,7 @@ GROUPS = {name: fes_mj.load_moments(name) for name in ("p1p2", "p1p3")}
 
 
 def text_of(numbers: list[dict[str, str]], name: str) -> str:
-    return next(each["text"] for each in numbers if each["name"] == name)
+    return next(number["text"] for number in numbers if number["name"] == name)
 
 
 @pytest.mark.parametrize("group", GROUPS)

@@ -35,7 +35,7 @@ def test_who_can_ride_is_who_statics_accepts(study: PopulationFit) -> None:
 def test_the_map_gives_the_power_of_a_seat_sought_for_one(study: PopulationFit) -> None:
     assert study.map_error < MAP_ERROR
     for riders in study.riders.values():
-        rider = Rider(*(float(each[-1]) for each in riders.legs), riders.people.sex)
+        rider = Rider(*(float(lengths[-1]) for lengths in riders.legs), riders.people.sex)
         static = fit_seat(study.design, rider, study.moments).static
         assert static
         assert riders.fitted[-1] == pytest.approx(static.power_mean, abs=MAP_ERROR)
@@ -54,5 +54,5 @@ def test_shares_and_powers_of_the_summary(study: PopulationFit) -> None:
 
 
 def test_a_map_says_nothing_beside_a_node_without_power() -> None:
-    found = PowerMap(np.array([0.3, 0.4, 0.5]), np.array([0.4, 0.5]), np.array([[1.0, 3], [2, 4], [np.nan, 5]]))
-    assert found.at(np.array([0.35, 0.45]), np.array([0.45, 0.45])) == pytest.approx([2.5, np.nan], nan_ok=True)
+    power_map = PowerMap(np.array([0.3, 0.4, 0.5]), np.array([0.4, 0.5]), np.array([[1.0, 3], [2, 4], [np.nan, 5]]))
+    assert power_map.at(np.array([0.35, 0.45]), np.array([0.45, 0.45])) == pytest.approx([2.5, np.nan], nan_ok=True)

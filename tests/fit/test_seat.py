@@ -21,11 +21,11 @@ SEARCH_ERROR = 0.05
 def test_a_moved_seat_moves_the_hip_and_nothing_else(design: fes_mj.Design) -> None:
     """Against the crank centre all of the linkage keeps its place; the hip goes forwards (-x) and up (y)."""
     moved = Seats(0.02, 0.01, 0.1).moved(design)
-    before, after = (solve(each).points for each in (design, moved))
+    before, after = (solve(seated).points for seated in (design, moved))
     for point in before.keys() - {"hip", "knee"}:
-        relative = [each[point].value - each["crank_centre"].value for each in (before, after)]
+        relative = [points[point].value - points["crank_centre"].value for points in (before, after)]
         assert relative[0] == pytest.approx(relative[1])
-    hips = [complex(each["hip"].value - each["crank_centre"].value) for each in (before, after)]
+    hips = [complex(points["hip"].value - points["crank_centre"].value) for points in (before, after)]
     assert hips[1] - hips[0] == pytest.approx(-0.02 + 0.01j)
     assert moved.linkage.seat_angle - design.linkage.seat_angle == pytest.approx(0.1)
 
@@ -61,9 +61,9 @@ def test_a_fit_stays_within_limits_and_range_and_never_loses_power() -> None:
     moments, limits = fes_mj.load_moments("p1p2"), SeatLimits((0.0, 0.1), (-0.02, 0.02), (0.0, 0.0))
     for name in ("r1", "d2"):
         design = fes_mj.load_design(name)
-        found = fit_seat(design, Rider(), moments, limits)
-        assert found.static
-        assert all(low <= value <= high for value, (low, high) in zip(found.seat, limits, strict=True))
+        fit = fit_seat(design, Rider(), moments, limits)
+        assert fit.static
+        assert all(low <= value <= high for value, (low, high) in zip(fit.seat, limits, strict=True))
         free = fit_seat(design, Rider(), moments)
         assert free.static
         assert free.static.extrapolation.share == 0
@@ -73,8 +73,8 @@ def test_a_fit_stays_within_limits_and_range_and_never_loses_power() -> None:
 
 def test_a_seat_that_need_not_move_stays() -> None:
     """The TRT delivers its own moments wherever they are in range: nothing is gained by moving."""
-    found = fit_seat(fes_mj.load_design("trt"), Rider(), fes_mj.load_moments("p1p2"))
-    assert found.seat == pytest.approx((0, 0, 0), abs=2e-3)
+    fit = fit_seat(fes_mj.load_design("trt"), Rider(), fes_mj.load_moments("p1p2"))
+    assert fit.seat == pytest.approx((0, 0, 0), abs=2e-3)
     assert seat_text(Seats(0.0, 0.0, 0.0)) == "stays where it is"
     assert (
         seat_text(Seats(-0.05, 0.1, math.radians(3))) == "5.0 cm away from the crank, 10.0 cm up, seat angle +3.0 deg"
@@ -83,8 +83,8 @@ def test_a_seat_that_need_not_move_stays() -> None:
 
 def test_who_does_not_fit_is_told_by_how_much_where_and_what_helps() -> None:
     child, moments = populations()["woman"].of_stature(1.25), fes_mj.load_moments("p1p2")
-    found = fit_seat(fes_mj.load_design("d1"), child, moments, SeatLimits((0.0, 0.1), (0.0, 0.0), (0.0, 0.0)))
-    content = found.summary()
+    fit = fit_seat(fes_mj.load_design("d1"), child, moments, SeatLimits((0.0, 0.1), (0.0, 0.0), (0.0, 0.0)))
+    content = fit.summary()
     assert not content["fits"]
     assert content["power_mean_W"] is None
     for words in ("thigh and shank cannot close at crank angle", "mm lack"):
@@ -99,9 +99,9 @@ def test_a_shorter_crank_helps_where_it_does() -> None:
     design = fes_mj.load_design("trt")
     far = abs(design.linkage.crank_centre)
     rider = Rider(thigh=0.4, shank=math.sqrt((far + 0.8 * design.linkage.crank - 0.4) ** 2 - 0.069**2))
-    found = fit_seat(design, rider, fes_mj.load_moments("p1p2"), SeatLimits((0.0, 0.0), (0.0, 0.0), (0.0, 0.0)))
-    assert not found.fits
-    assert any("a crank (R2) of 10.5 instead of 15.0 cm" in text for text in found.helps)
+    fit = fit_seat(design, rider, fes_mj.load_moments("p1p2"), SeatLimits((0.0, 0.0), (0.0, 0.0), (0.0, 0.0)))
+    assert not fit.fits
+    assert any("a crank (R2) of 10.5 instead of 15.0 cm" in text for text in fit.helps)
 
 
 def test_no_seat_repairs_a_linkage_that_cannot_turn() -> None:

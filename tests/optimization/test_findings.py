@@ -83,10 +83,10 @@ def test_finished_searches_are_not_done_again(tmp_path: Path) -> None:
         findings.finish(0, replace(stored[0], merit=1e3))  # to be recognised
         again = run_searches(problem, "random-pursuit", searches=3, budget=3000, seed=1, findings=findings)
     assert again[0].merit == 1e3
-    assert sorted(each.merit for each in again)[:2] == sorted(
-        each.merit for each in whole if each.merit != stored[0].merit
+    assert sorted(result.merit for result in again)[:2] == sorted(
+        result.merit for result in whole if result.merit != stored[0].merit
     )
-    for one, other in zip(again[1:], [each for each in whole if each.merit != stored[0].merit], strict=True):
+    for one, other in zip(again[1:], [result for result in whole if result.merit != stored[0].merit], strict=True):
         np.testing.assert_array_equal(one.x, other.x)
         np.testing.assert_array_equal(one.history, other.history)
 
@@ -103,12 +103,12 @@ def test_what_another_search_has_found_is_refused_by_name(tmp_path: Path) -> Non
     assert contents(findings.folder) == before
 
 
-@pytest.mark.parametrize("found", ["{}", "not JSON"])
-def test_a_damaged_record_is_named(found: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("text", ["{}", "not JSON"])
+def test_a_damaged_record_is_named(text: str, tmp_path: Path) -> None:
     findings = findings_at(tmp_path / "best.toml")
     findings.folder.mkdir()
     (findings.folder / "recipe.json").write_text("{}")
-    (findings.folder / "best-0.json").write_text(found)
+    (findings.folder / "best-0.json").write_text(text)
     with pytest.raises(fes_mj.InputError, match=r"best-0\.json"):
         findings.searching(problem_of("d1")).__enter__()
 
@@ -138,14 +138,14 @@ def test_every_number_of_a_problem_counts() -> None:
 
 def of_run(mark: str) -> list[str]:
     """Processes that a marked command started and that are still there."""
-    found = []
+    commands = []
     for process in Path("/proc").glob("[0-9]*"):
         try:
             if f"{MARK}={mark}".encode() in (process / "environ").read_bytes():
-                found.append((process / "cmdline").read_text())
+                commands.append((process / "cmdline").read_text())
         except OSError:
             continue
-    return found
+    return commands
 
 
 @pytest.mark.process

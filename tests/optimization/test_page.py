@@ -31,11 +31,12 @@ def front() -> Front:
     """A front of two: D1, and D1 with another crank."""
     problem = problem_of("d1")
     x = problem.variables(problem.template) + np.array([[0.0] * 10, [0.0, 0.0, 0.004] + [0.0] * 7])
-    designs = [problem.design(each, "one") for each in x]
+    designs = [problem.design(row, "one") for row in x]
     power = [
-        [quasi_static(each, fes_mj.load_moments(group)).power_mean for group in ("p1p2", "p1p3")] for each in designs
+        [quasi_static(design, fes_mj.load_moments(group)).power_mean for group in ("p1p2", "p1p3")]
+        for design in designs
     ]
-    return Front(x, np.array(power), np.array([fluctuation(each, MOMENTS)[0] for each in designs]), 2)
+    return Front(x, np.array(power), np.array([fluctuation(design, MOMENTS)[0] for design in designs]), 2)
 
 
 @pytest.fixture(scope="module")

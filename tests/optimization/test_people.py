@@ -57,7 +57,7 @@ def test_a_power_that_is_linear_in_the_legs_is_exact(statistic: str) -> None:
     people, random = sampled(statistic, 300, 3), np.random.default_rng(3)
     own = [1.0, 1.0]  # whoever that is: his power does not count
     legs = np.vstack([own, people.others])
-    sample = np.hstack([each.sample(300, random) for each in populations().values()])[:2].T
+    sample = np.hstack([people.sample(300, random) for people in populations().values()])[:2].T
     slope = np.array([7.0, -30.0])
     expected = {"population": np.mean, "population-p10": lambda power: np.percentile(power, 10)}[statistic]
     assert people.power((20 + legs @ slope)[:, None])[0, 0] == pytest.approx(expected(20 + sample @ slope), rel=1e-9)
@@ -74,13 +74,13 @@ def test_each_rider_is_within_the_limits_one_at_a_time() -> None:
     for row in [*np.flatnonzero(evaluation.feasible)[:5], *np.flatnonzero(~evaluation.feasible)[:5]]:
         designs = problem.riders(evaluation.x[row])
         alone = []
-        for each in designs:
-            one = replace(problem, template=each, limits=everywhere, people=ONE_RIDER)
-            alone.append(one.evaluate(one.variables(each)[None]))
-        margins = np.array([each.margins[0, motion:] for each in alone])
+        for design in designs:
+            one = replace(problem, template=design, limits=everywhere, people=ONE_RIDER)
+            alone.append(one.evaluate(one.variables(design)[None]))
+        margins = np.array([own.margins[0, motion:] for own in alone])
         np.testing.assert_allclose(margins.min(axis=0), evaluation.margins[row, motion:], rtol=1e-9, atol=1e-9)
         if evaluation.feasible[row]:
-            powers = [fes_mj.quasi_static(each, MOMENTS).power_mean for each in designs]
+            powers = [fes_mj.quasi_static(design, MOMENTS).power_mean for design in designs]
             expected = problem.people.power(np.array(powers)[:, None])[0, 0]
             assert evaluation.power[row, 0] == pytest.approx(expected, rel=1e-4)
 
@@ -91,12 +91,12 @@ def test_seats_stay_within_the_limits_of_fit_and_the_linkage_stays() -> None:
     x[LENGTH_COUNT:-1] = np.random.default_rng(0).uniform(-1, 1, len(x) - LENGTH_COUNT - 1)
     drawn, *others = problem.riders(x)
     assert drawn == replace(problem.template, name=drawn.name)
-    for each in others:
-        shift = each.linkage.ground - drawn.linkage.ground
-        moves = (shift.real, -shift.imag, each.linkage.seat_angle - drawn.linkage.seat_angle)
+    for moved in others:
+        shift = moved.linkage.ground - drawn.linkage.ground
+        moves = (shift.real, -shift.imag, moved.linkage.seat_angle - drawn.linkage.seat_angle)
         for move, (low, high) in zip(moves, SEAT_LIMITS, strict=True):
             assert low - 1e-12 <= move <= high + 1e-12
-        back = replace(each.linkage, ground=drawn.linkage.ground, seat_angle=drawn.linkage.seat_angle)
+        back = replace(moved.linkage, ground=drawn.linkage.ground, seat_angle=drawn.linkage.seat_angle)
         assert back == drawn.linkage
 
 
@@ -111,8 +111,8 @@ def test_a_search_finds_a_design_that_suits_people_better() -> None:
     assert evaluation.feasible[0]
     assert evaluation.power[0, 0] == pytest.approx(best.merit)
     found = problem.design(best.x, "found")
-    seated = [fit_seat(found, each.rider, MOMENTS).static for each in problem.riders(best.x)]
-    drawn = [fes_mj.quasi_static(each, MOMENTS) for each in problem.riders(best.x)]
+    seated = [fit_seat(found, person.rider, MOMENTS).static for person in problem.riders(best.x)]
+    drawn = [fes_mj.quasi_static(person, MOMENTS) for person in problem.riders(best.x)]
     for fitted, own in itertools.zip_longest(seated, drawn):
         assert fitted
         assert fitted.power_mean > own.power_mean - 0.05

@@ -102,8 +102,8 @@ def test_whatever_is_feasible_is_accepted_by_the_other_commands(
     x = np.random.default_rng(0).uniform(low, high, (20_000, LENGTH_COUNT + 1))
     nine, ten = problem.evaluate(x[:, :LENGTH_COUNT]), problem.evaluate(x)
     driven = [result.x for result in run_searches(problem, "differential-evolution", searches=2, budget=8000)]
-    for found in [*nine.x[nine.feasible][:20], *ten.x[ten.feasible][:20], *driven]:
-        file.write_text(design_toml(problem.design(found, "found")))
+    for variables in [*nine.x[nine.feasible][:20], *ten.x[ten.feasible][:20], *driven]:
+        file.write_text(design_toml(problem.design(variables, "found")))
         design = fes_mj.load_design(file)
         cadence = crank_speed(None, design)
         assert math.isfinite(fes_mj.quasi_static(design, moments, points=120).power_mean)

@@ -71,11 +71,11 @@ def test_mean_and_deviation_are_those_of_statics(design: fes_mj.Design, group: s
 @pytest.mark.parametrize("group", GROUPS)
 def test_the_error_of_a_gain_knows_that_powers_are_correlated(group: str) -> None:
     better, worse = (fes_mj.quasi_static(fes_mj.load_design(name), fes_mj.load_moments(group)) for name in ("d2", "d1"))
-    found = gain(powers(better.design, group), powers(worse.design, group))
-    assert found.mean == pytest.approx(better.power_mean - worse.power_mean, rel=1e-3)
-    assert found.deviation == pytest.approx(difference_sd(better, worse), rel=1e-2)
+    own = gain(powers(better.design, group), powers(worse.design, group))
+    assert own.mean == pytest.approx(better.power_mean - worse.power_mean, rel=1e-3)
+    assert own.deviation == pytest.approx(difference_sd(better, worse), rel=1e-2)
     uncorrelated = np.hypot(better.power_sd, worse.power_sd)
-    assert abs(found.deviation - uncorrelated) > 0.01 * found.deviation
+    assert abs(own.deviation - uncorrelated) > 0.01 * own.deviation
 
 
 def test_a_gain_over_oneself_is_certain() -> None:
@@ -91,15 +91,15 @@ def test_own_moments_have_no_known_error(smooth_moments: fes_mj.JointMoments) ->
 def test_caution_trades_gain_for_certainty() -> None:
     pytest.importorskip("cma")
     table, base = uncertain_table(fes_mj.load_moments("p1p3")), problem_of("d2", grashof_min=0.005)
-    found = []
+    gains = []
     for caution in (0.0, 2.0):
         own = fes_mj.load_design("d2")
         baseline = cycles(own, table).work[0] * own.linkage.cadence / (2 * np.pi)
         problem = Problem(own, table, base.limits, base.joint_speed, caution, baseline)
         x = run_searches(problem, "cma-es", budget=6000, seed=4)[0].x
-        found.append(gain(problem.evaluate(x[None]).power[0], baseline))
-    assert found[1].deviation < found[0].deviation
-    assert found[1].mean > 2 * found[1].deviation
+        gains.append(gain(problem.evaluate(x[None]).power[0], baseline))
+    assert gains[1].deviation < gains[0].deviation
+    assert gains[1].mean > 2 * gains[1].deviation
 
 
 def test_tolerance_against_one_design_at_a_time() -> None:

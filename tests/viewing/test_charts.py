@@ -27,6 +27,6 @@ def test_power_and_residual_of_a_case_close_and_the_residual_is_that_of_the_chec
     for angle, value in curves:
         assert (angle[-1] - angle[0], value[-1]) == pytest.approx((360, value[0]))
     missed = curves[-1][1][:-1] / 1e3
-    check = next(each for each in case.checks if each.name == "inverse_dynamics")
+    check = next(check for check in case.checks if check.name == "inverse_dynamics")
     assert np.sqrt(np.mean(missed**2)) == pytest.approx(check.value, rel=0.02)  # every nth step
     assert page_svg(figure, power).count("exact, mW") == 1

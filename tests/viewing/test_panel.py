@@ -28,6 +28,6 @@ def test_the_verdict_is_of_the_means_with_their_difference() -> None:
     case = fes_mj.Case(fes_mj.load_design("r1"), fes_mj.load_moments())
     assert verdict(case) == f"mean power agrees: difference {case.difference_text}"
     coarse = fes_mj.Case(fes_mj.load_design("r2"), fes_mj.load_moments(), timestep=4e-3)
-    failed = [each.name.replace("_", " ") for each in coarse.checks if not each.ok]
+    failed = [check.name.replace("_", " ") for check in coarse.checks if not check.ok]
     assert failed
     assert verdict(coarse) == f"check failed: {', '.join(failed)}"
