@@ -22,8 +22,8 @@ from exudyn import itemInterface as items  # noqa: E402, N813
 import fes_mj  # noqa: E402
 from benchmarks import record  # noqa: E402
 from fes_mj.common.console import print_table  # noqa: E402
+from fes_mj.linkage.inertia import GRAVITY, inertias  # noqa: E402
 from fes_mj.linkage.kinematics import solve  # noqa: E402
-from fes_mj.linkage.segments import GRAVITY, inertias  # noqa: E402
 from fes_mj.moments.torque_map import torque_map  # noqa: E402
 from fes_mj.simulation.compiled import compiled_loop  # noqa: E402
 from fes_mj.simulation.mjcf import ModelOptions, build_mjcf  # noqa: E402

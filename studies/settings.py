@@ -26,8 +26,8 @@ from fes_mj.crosscheck.pipeline import Pipeline
 from fes_mj.crosscheck.turn_case import Case
 from fes_mj.linkage.design import BODIES, Design
 from fes_mj.linkage.design_file import DESIGNS
+from fes_mj.linkage.inertia import inertias
 from fes_mj.linkage.kinematics import Motion
-from fes_mj.linkage.segments import inertias
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.torque_map import TorqueMap
 from fes_mj.simulation import mjcf, stepping

@@ -9,10 +9,9 @@ import numpy as np
 from fes_mj.common.arrays import ComplexArray, FloatArray
 from fes_mj.linkage import kinematics
 from fes_mj.linkage.design import Design
-from fes_mj.linkage.inertia import BodyLoad, body_loads
+from fes_mj.linkage.inertia import GRAVITY, BodyLoad, body_loads
 from fes_mj.linkage.joints import PerJoint
 from fes_mj.linkage.kinematics import Motion
-from fes_mj.linkage.segments import GRAVITY
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.torque_map import TorqueMap, torque_map
 from fes_mj.simulation.appearance import Spec

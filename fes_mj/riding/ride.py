@@ -11,9 +11,8 @@ from fes_mj.common.brief import Brief
 from fes_mj.common.errors import InputError
 from fes_mj.common.units import KMH
 from fes_mj.linkage.design import TRICYCLE_SPEED, WHEEL_DIAMETER, Design
-from fes_mj.linkage.inertia import CrankInertia
+from fes_mj.linkage.inertia import GRAVITY, CrankInertia, inertias
 from fes_mj.linkage.legs import TWO_LEGS
-from fes_mj.linkage.segments import GRAVITY, inertias
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.riding.leg_table import LegTable, leg_table
 from fes_mj.statics.turn import quasi_static

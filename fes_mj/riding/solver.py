@@ -15,8 +15,7 @@ import math
 from typing import Any, NamedTuple
 
 from fes_mj.common.machine_code import kept_machine_code, machine_code, sources
-from fes_mj.linkage.inertia import CrankInertia
-from fes_mj.linkage.segments import GRAVITY
+from fes_mj.linkage.inertia import GRAVITY, CrankInertia
 from fes_mj.moments.muscle_response import MUSCLES, Response, between, delivered, lead, place
 from fes_mj.riding.leg_table import LegTable
 from fes_mj.riding.ride import Ride

@@ -16,8 +16,8 @@ from fes_mj.common.style import COLOURS, LINKS, hex_colour, rgb
 from fes_mj.linkage import kinematics
 from fes_mj.linkage.assembly import bounding_box
 from fes_mj.linkage.design import BODIES, Design
+from fes_mj.linkage.inertia import foot_points
 from fes_mj.linkage.legs import Leg
-from fes_mj.linkage.segments import foot_points
 
 Spec: TypeAlias = Any  # mujoco.MjSpec and its elements, which have no types
 _CAPSULE, _BOX = mujoco.mjtGeom.mjGEOM_CAPSULE, mujoco.mjtGeom.mjGEOM_BOX

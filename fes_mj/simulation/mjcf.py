@@ -17,9 +17,9 @@ from fes_mj.common.errors import InputError
 from fes_mj.common.units import RPM
 from fes_mj.linkage import kinematics
 from fes_mj.linkage.design import Design
+from fes_mj.linkage.inertia import GRAVITY, Inertia, combine, inertias
 from fes_mj.linkage.kinematics import Motion
 from fes_mj.linkage.legs import LEGS, Leg
-from fes_mj.linkage.segments import GRAVITY, Inertia, combine, inertias
 from fes_mj.linkage.turning import turning
 from fes_mj.simulation import appearance
 from fes_mj.simulation.appearance import Spec

@@ -7,8 +7,8 @@ import mujoco
 import numpy as np
 
 from fes_mj.linkage import kinematics
+from fes_mj.linkage.inertia import GRAVITY
 from fes_mj.linkage.legs import TWO_LEGS
-from fes_mj.linkage.segments import GRAVITY
 from fes_mj.riding.ride import Ride
 from fes_mj.simulation.appearance import Spec
 from fes_mj.simulation.bench import joint_drives

@@ -13,9 +13,8 @@ from fes_mj.common.errors import InputError
 from fes_mj.common.units import RPM
 from fes_mj.linkage import kinematics
 from fes_mj.linkage.design import BODIES, BRANCHES, Design
-from fes_mj.linkage.inertia import crank_inertia
+from fes_mj.linkage.inertia import GRAVITY, crank_inertia, inertias
 from fes_mj.linkage.legs import LEGS
-from fes_mj.linkage.segments import GRAVITY, inertias
 from fes_mj.linkage.turning import turning
 
 # Crank angles at which the error is evaluated: a dyad 0.1 mm from its dead centre passes it within 2 deg.

@@ -7,9 +7,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from fes_mj.common.arrays import ComplexArray
-from fes_mj.linkage.inertia import body_loads
+from fes_mj.linkage.inertia import GRAVITY, body_loads
 from fes_mj.linkage.riders import leg_mass_after_injury
-from fes_mj.linkage.segments import GRAVITY
 from fes_mj.statics.equilibrium import equilibrium
 from fes_mj.statics.turn import QuasiStatic
 

@@ -20,7 +20,7 @@ from scipy.integrate import solve_ivp
 from fes_mj.common.arrays import ComplexArray, FloatArray
 from fes_mj.common.checks import Check, check
 from fes_mj.linkage.design import Design, Linkage, Rider
-from fes_mj.linkage.segments import GRAVITY, Inertia
+from fes_mj.linkage.inertia import GRAVITY, Inertia
 from fes_mj.simulation.appearance import Spec
 from fes_mj.simulation.mjcf import AXIS, LOOP_SOLIMP, ModelOptions, Physics, add_body, build_mjcf, set_options
 from fes_mj.simulation.stepping import Sensors, recording_loop, run_loop

@@ -12,8 +12,8 @@ from fes_mj.common.style import FAINT, INK, hex_colour
 from fes_mj.linkage import kinematics
 from fes_mj.linkage.assembly import bounding_box
 from fes_mj.linkage.design import Design
+from fes_mj.linkage.inertia import foot_points
 from fes_mj.linkage.legs import LEGS, Leg
-from fes_mj.linkage.segments import foot_points
 from fes_mj.simulation.appearance import PARTS, Spec, bars
 
 SIDE = 720  # pixels; pictures are square

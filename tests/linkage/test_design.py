@@ -8,8 +8,8 @@ import pytest
 from fes_mj.common.errors import InputError
 from fes_mj.linkage.design import SEXES, Linkage, Rider
 from fes_mj.linkage.design_file import load_design
+from fes_mj.linkage.inertia import DE_LEVA, FOOT_LENGTH
 from fes_mj.linkage.legs import LEGS
-from fes_mj.linkage.segments import DE_LEVA, FOOT_LENGTH
 from fes_mj.linkage.variables import replaced
 
 

@@ -7,8 +7,8 @@ import pytest
 
 from fes_mj.common.errors import InputError
 from fes_mj.linkage.design_file import load_design
+from fes_mj.linkage.inertia import inertias
 from fes_mj.linkage.riders import _SCORE_95, Population, leg_mass_after_injury, populations, preset
-from fes_mj.linkage.segments import inertias
 from tests.linkage.test_design_file import written
 
 SIZE = 40_000

@@ -8,8 +8,8 @@ import pytest
 
 import fes_mj
 from fes_mj.linkage import kinematics
+from fes_mj.linkage.inertia import GRAVITY
 from fes_mj.linkage.legs import TWO_LEGS
-from fes_mj.linkage.segments import GRAVITY
 from fes_mj.moments.drive import POINTS, drive
 from fes_mj.moments.muscle_response import place
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE

@@ -9,7 +9,7 @@ import pytest
 from fes_mj import load_design
 from fes_mj.common.style import COLOURS, LINKS, rgb
 from fes_mj.linkage.design_file import DESIGNS
-from fes_mj.linkage.segments import inertias
+from fes_mj.linkage.inertia import inertias
 from fes_mj.simulation.appearance import PARTS
 from fes_mj.simulation.mjcf import build_mjcf
 

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 import fes_mj
+from fes_mj.linkage.inertia import inertias
 from fes_mj.linkage.kinematics import solve
-from fes_mj.linkage.segments import inertias
 from fes_mj.simulation.mjcf import ModelOptions, build_mjcf
 
 

@@ -5,7 +5,7 @@ import pytest
 
 import fes_mj
 from fes_mj.common.style import LINKS, hex_colour, rgb
-from fes_mj.linkage.segments import foot_points
+from fes_mj.linkage.inertia import foot_points
 from fes_mj.simulation.appearance import PARTS, back_to_front, bars
 
 

@@ -5,7 +5,7 @@ import pytest
 
 from fes_mj.linkage import kinematics
 from fes_mj.linkage.design import Design
-from fes_mj.linkage.segments import GRAVITY, inertias
+from fes_mj.linkage.inertia import GRAVITY, inertias
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.torque_map import torque_map
 from fes_mj.statics.equilibrium import crank_moment, virtual_work

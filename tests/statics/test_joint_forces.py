@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 
 import fes_mj
-from fes_mj.linkage.inertia import body_loads
+from fes_mj.linkage.inertia import GRAVITY, body_loads
 from fes_mj.linkage.riders import leg_mass_after_injury
-from fes_mj.linkage.segments import GRAVITY
 from fes_mj.statics.joint_forces import JointForces, peaks
 from fes_mj.statics.turn import quasi_static
 

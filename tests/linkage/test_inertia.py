@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from fes_mj.linkage.segments import Inertia, combine, inertias
+from fes_mj.linkage.inertia import Inertia, combine, inertias
 
 
 def test_a_stretched_leg_weighs_what_it_should() -> None:
     """Static moment about the hip of thigh and shank with foot lying horizontally, against the sum of their parts."""
     from fes_mj.linkage.design_file import load_design
-    from fes_mj.linkage.segments import ANKLE_FROM_HEEL, DE_LEVA, FOOT_LENGTH
+    from fes_mj.linkage.inertia import ANKLE_FROM_HEEL, DE_LEVA, FOOT_LENGTH
 
     design, table = load_design("trt"), DE_LEVA["male"]
     bodies = inertias(design)
