@@ -1,6 +1,7 @@
 """How the faults of data/faults.toml are made. Each was made in print, in a tool, or nearly in this project.
 
-In the order of the pipeline: statics, kinematics, torque map, MuJoCo model, simulation, design file.
+In the order of the pipeline: statics, kinematics, torque map, MuJoCo model, simulation, design file; then of rides,
+each in one of the two solvers.
 """
 
 import math
@@ -15,21 +16,32 @@ import numpy as np
 from fes_mj.common.arrays import FloatArray
 from fes_mj.common.reading import DATA, read_toml
 from fes_mj.crosscheck.pipeline import Pipeline
+from fes_mj.crosscheck.ride_case import RideCase
 from fes_mj.linkage import kinematics
 from fes_mj.linkage.design import BODIES, Design
+from fes_mj.linkage.inertia import BodyLoad
 from fes_mj.linkage.joints import PerJoint
 from fes_mj.linkage.kinematics import Jet, Motion, Rotation
+from fes_mj.linkage.legs import TWO_LEGS
 from fes_mj.linkage.variables import ALL
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.moments.torque_map import GRID, TorqueMap
+from fes_mj.riding.ride import Ride
+from fes_mj.riding.trace import ride as ride_by_equation
 from fes_mj.simulation.bench import PLAIN, BenchOptions
 from fes_mj.simulation.mjcf import SERVO, SERVO_GAIN
+from fes_mj.simulation.road import RoadRun
+from fes_mj.simulation.road_mjcf import DRIVETRAIN, ROAD
 from fes_mj.simulation.time_step import steps_per_turn
 from fes_mj.statics.equilibrium import equilibrium, joint_couples, moment_arm
 from fes_mj.verification.faults import Fault, Steps, in_model
-from fes_mj.verification.ride_mistakes import RIDE_STEPS
 
 _FILE = DATA / "faults.toml"
+
+
+def in_result(step: Callable[..., Any], change: Callable[[Any], Any]) -> Steps:
+    """What a step gives is changed."""
+    return {step.__name__: lambda *arguments, **options: change(step(*arguments, **options))}
 
 
 def with_equilibrium(**options: Any) -> Steps:
@@ -52,10 +64,6 @@ def without_length(motion: Motion, body: str, point: str) -> Any:
 
 def by_crank_angle(steps: Pipeline, motion: Motion, leg: str = "") -> PerJoint[FloatArray]:
     return steps.moments.at(motion.crank_angle - steps.moments.measured_on.top_dead_centre)
-
-
-def in_motion(change: Callable[[Motion], Motion]) -> Steps:
-    return {"motion": lambda steps, crank_angle: change(Pipeline.motion(steps, crank_angle))}
 
 
 def knee_below(motion: Motion) -> Motion:
@@ -90,13 +98,23 @@ def in_map(kind: type[TorqueMap]) -> Steps:
     return {"torque": cached_property(lambda steps: kind(steps.moments))}
 
 
-class DirectionsExchanged(TorqueMap):
+class Misread(TorqueMap):
+    """Another angle and rate reach either form of the map."""
+
+    def read(self, joint: str, angle: Any, rate: Any) -> tuple[Any, Any]:
+        raise NotImplementedError
+
     def source_angle(self, joint: str, angle: Any, rate: Any) -> FloatArray:
-        return super().source_angle(joint, angle, np.where(np.asarray(rate) >= 0, -1.0, 1.0))
+        return super().source_angle(joint, *self.read(joint, angle, rate))
 
     def feedback(self, joint: str) -> Callable[[float, float], float]:
         moment = super().feedback(joint)
-        return lambda angle, rate: moment(angle, -1.0 if rate >= 0 else 1.0)
+        return lambda angle, rate: moment(*self.read(joint, angle, rate))
+
+
+class DirectionsExchanged(Misread):
+    def read(self, joint: str, angle: Any, rate: Any) -> tuple[Any, Any]:
+        return angle, 1.0 - 2.0 * (rate >= 0)
 
 
 class FromHorizontal(TorqueMap):
@@ -105,16 +123,9 @@ class FromHorizontal(TorqueMap):
         return self.moments.at(GRID + self.reference.top_dead_centre)
 
 
-class BootForgotten(TorqueMap):
-    def source_angle(self, joint: str, angle: Any, rate: Any) -> FloatArray:
-        return super().source_angle(joint, angle - self.boot(joint), rate)
-
-    def feedback(self, joint: str) -> Callable[[float, float], float]:
-        moment, boot = super().feedback(joint), self.boot(joint)
-        return lambda angle, rate: moment(angle - boot, rate)
-
-    def boot(self, joint: str) -> float:
-        return float(self.reference.design.boot_angle) * (joint == "knee")
+class BootForgotten(Misread):
+    def read(self, joint: str, angle: Any, rate: Any) -> tuple[Any, Any]:
+        return angle - float(self.reference.design.boot_angle) * (joint == "knee"), rate
 
 
 class OpenTable(TorqueMap):
@@ -149,11 +160,6 @@ def in_keyframe(field: str, joint: str, change: Callable[[float], float]) -> Ste
     return {"edit_model": edit}
 
 
-def late_torque(steps: Pipeline, *arguments: Any, **options: Any) -> Any:
-    run = Pipeline.run(steps, *arguments, **options)
-    return replace(run, crank_moment=np.roll(run.crank_moment, 1))
-
-
 def half_a_turn_more(steps: Pipeline, *arguments: Any, **options: Any) -> Any:
     return replace(Pipeline.run(steps, *arguments, **options | {"turns": 1.5}), turns=1)
 
@@ -172,9 +178,28 @@ def with_whole_couples(steps: Pipeline, motion: Motion, *arguments: Any, **optio
     return {body: load._replace(couple=whole[body].couple) for body, load in loads.items()}
 
 
-def without_couples(steps: Pipeline, *arguments: Any, **options: Any) -> Any:
-    loads = Pipeline.loads(steps, *arguments, **options)
+def without_couples(loads: dict[str, BodyLoad]) -> dict[str, BodyLoad]:
     return {body: load._replace(couple=0 * load.couple) for body, load in loads.items()}
+
+
+def in_equation(change: Callable[[Ride], Ride]) -> Steps:
+    """The reduced equation of motion is that of a changed ride."""
+    return {"reference": cached_property(lambda case: ride_by_equation(change(case.ride)))}
+
+
+class OneLegCounted(RoadRun):
+    legs = TWO_LEGS[:1]
+
+
+class RollingUnsigned(RoadRun):
+    def resistance(self, speed: FloatArray) -> FloatArray:
+        load = self.ride.load
+        return np.asarray(load.rolling + load.climb + load.drag * speed * np.abs(speed))
+
+
+def other_way(limits: FloatArray) -> FloatArray:
+    """A range that ends where it began."""
+    return np.array([-limits[1], limits[0]])
 
 
 def in_linkage(**changes: Callable[[float], float]) -> Callable[[Design], Design]:
@@ -193,10 +218,10 @@ STEPS: dict[str, Steps] = {
     "thigh_lever": with_equilibrium(arm=without_length),
     "loads_at_joints": {"equilibrium": with_loads_at_joints},
     "map_by_crank_angle": {"joint_moment": by_crank_angle},
-    "wrong_branch": in_motion(knee_below),
-    "wrong_rate": in_motion(knee_from_shank_alone),
-    "no_centripetal": in_motion(without_centripetal),
-    "length_in_kinematics": in_motion(long_thigh),
+    "wrong_branch": in_result(Pipeline.motion, knee_below),
+    "wrong_rate": in_result(Pipeline.motion, knee_from_shank_alone),
+    "no_centripetal": in_result(Pipeline.motion, without_centripetal),
+    "length_in_kinematics": in_result(Pipeline.motion, long_thigh),
     "directions_exchanged": in_map(DirectionsExchanged),
     "crank_zero": in_map(FromHorizontal),
     "boot_forgotten": in_map(BootForgotten),
@@ -219,12 +244,26 @@ STEPS: dict[str, Steps] = {
     "stale_keyframe": in_keyframe("qpos", "crank", lambda angle: angle + math.radians(5)),
     "reversed_start": in_keyframe("qvel", "hip", lambda speed: -speed),
     "six_digits": in_model("compiler", savecompiled=True, savecanonical=True),
-    "late_torque": {"run": late_torque},
+    "late_torque": in_result(Pipeline.run, lambda run: replace(run, crank_moment=np.roll(run.crank_moment, 1))),
     "turn_and_a_half": {"run": half_a_turn_more},
     "no_pre_roll": {"run": without_pre_roll},
     "coarse_step": {"run": coarser},
-    "no_rotary_inertia": {"loads": without_couples},
+    "no_rotary_inertia": in_result(Pipeline.loads, without_couples),
     "inertia_not_scaled": {"loads": with_whole_couples},
+}
+# Step of a RideCase -> what takes its place, by the name of the fault in data/faults.toml.
+RIDE_STEPS: dict[str, Steps] = {
+    "freewheel_reversed": in_model("tendons", DRIVETRAIN, range=other_way)
+    | in_result(RideCase.control, lambda control: control._replace(fixed=True)),
+    "rims_once": in_model("joints", ROAD, armature=0.0),
+    "slope_reversed": in_equation(lambda ride: replace(ride, road=replace(ride.road, slope=-ride.road.slope))),
+    "air_twice": in_model("joints", ROAD, damping=lambda damping: 2 * np.asarray(damping)),
+    "left_leg_unshifted": in_result(RideCase.control, lambda control: control._replace(leg_lag=0 * control.leg_lag)),
+    "moments_late": in_result(
+        RideCase.control, lambda control: control._replace(leg_lag=control.leg_lag + math.radians(10))
+    ),
+    "one_leg_counted": {"record": OneLegCounted},
+    "rolling_unsigned": {"record": RollingUnsigned},
 }
 # Edits of the design where its file is read.
 EDITS: dict[str, Callable[[Design], Design]] = {

@@ -6,8 +6,7 @@ import pytest
 
 from fes_mj.common.checks import definitions
 from fes_mj.common.reading import read_toml
-from fes_mj.verification.mistakes import EDITS, STEPS, faults
-from fes_mj.verification.ride_mistakes import RIDE_STEPS
+from fes_mj.verification.mistakes import EDITS, RIDE_STEPS, STEPS, faults
 
 ROOT = Path(__file__).parents[2]
 
