@@ -1,7 +1,7 @@
 """What a design does in a turn, as the page shows it: motion, curves and numbers, or why there are none."""
 
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -40,7 +40,7 @@ def turn(design: Design, moments: Mapping[str, JointMoments], legs: int = 1) -> 
     first = next(iter(solved.values()))
     return answer | {
         "broken": broken(design, first),
-        "numbers": _numbers(first),
+        "numbers": _shown(_numbers(first)),
         "joints": {joint: np.round(np.degrees(angle), DIGITS) for joint, angle in first.joint_angle.items()},
         "moments": {name: _under(static, legs) for name, static in solved.items()},
     }
@@ -62,46 +62,39 @@ def _under(solved: QuasiStatic, legs: int) -> dict[str, Any]:
         "power_mean_W": solved.power_mean,
         "range_deg": {joint: np.degrees(reference.ranges[joint]) for joint in JOINTS},
         "outside": np.maximum(*outside) > 0,
-        "numbers": _power_numbers(solved),
+        "numbers": _shown(_power_numbers(solved)),
         "note": solved.extrapolation.verdict,
     }
 
 
-def _number(name: str, words: str, text: str, unit: str) -> dict[str, str]:
-    return {"name": name, "words": words, "text": typeset(text), "unit": unit}
+Number: TypeAlias = tuple[str, str, str, str]  # name, words, text, unit
 
 
-def _numbers(solved: QuasiStatic) -> list[dict[str, str]]:
+def _shown(numbers: Iterable[Number]) -> list[dict[str, str]]:
+    rows = ((name, words, typeset(text), unit) for name, words, text, unit in numbers)
+    return [dict(zip(("name", "words", "text", "unit"), row, strict=True)) for row in rows]
+
+
+def _numbers(solved: QuasiStatic) -> Iterator[Number]:
     """Numbers that do not depend on the moments."""
     design, motion = solved.design, solved.motion
-    speed = {joint: np.degrees(np.mean(np.abs(rate))) * solved.cadence for joint, rate in motion.joint_rate.items()}
-    rows = [
-        _number("cadence", "cadence", f"{solved.cadence / RPM:.1f}", "rpm"),
-        *(
-            _number(f"{joint}_range", f"{joint} range", f"{low:.1f} to {high:.1f}", "deg")
-            for joint, (low, high) in solved.joint_range_deg.items()
-        ),
-        _number("knee_speed", "mean knee speed", f"{speed['knee']:.0f}", "deg/s"),
-        _number(
-            "transmission",
-            "least transmission angle",
-            f"{float(motion_characteristics(motion)['transmission_angle_min_deg']):.1f}",
-            "deg",
-        ),
-    ]
+    yield "cadence", "cadence", f"{solved.cadence / RPM:.1f}", "rpm"
+    for joint, (low, high) in solved.joint_range_deg.items():
+        yield f"{joint}_range", f"{joint} range", f"{low:.1f} to {high:.1f}", "deg"
+    knee_speed = np.degrees(np.mean(np.abs(motion.joint_rate.knee))) * solved.cadence
+    yield "knee_speed", "mean knee speed", f"{knee_speed:.0f}", "deg/s"
+    transmission = float(motion_characteristics(motion)["transmission_angle_min_deg"])
+    yield "transmission", "least transmission angle", f"{transmission:.1f}", "deg"
     if design.linkage.kind != "trt":
-        rows.append(_number("grashof", "Grashof margin", f"{100 * float(grashof_margin(design)[0]):.2f}", "cm"))
-    return rows
+        yield "grashof", "Grashof margin", f"{100 * float(grashof_margin(design)[0]):.2f}", "cm"
 
 
-def _power_numbers(solved: QuasiStatic) -> list[dict[str, str]]:
+def _power_numbers(solved: QuasiStatic) -> Iterator[Number]:
     character = power_characteristics(solved.power)
     forces = peaks(JointForces(solved).with_masses)
     joint = max(forces, key=lambda name: forces[name])
-    return [
-        _number("power", "mean power, one leg", with_sd(solved.power_mean, solved.power_sd), "W"),
-        _number("work", "work per turn", f"{solved.work_per_turn:.2f}", "J"),
-        _number("inactive", "inactive zone", f"{100 * float(character['inactive_zone_share']):.0f}", "% of the turn"),
-        _number("ripple", "power, peak to peak", f"{float(character['power_peak_to_peak_W']):.0f}", "W"),
-        _number("force", f"peak pin force ({joint.replace('_', ' ')})", f"{forces[joint]:.0f}", "N"),
-    ]
+    yield "power", "mean power, one leg", with_sd(solved.power_mean, solved.power_sd), "W"
+    yield "work", "work per turn", f"{solved.work_per_turn:.2f}", "J"
+    yield "inactive", "inactive zone", f"{100 * float(character['inactive_zone_share']):.0f}", "% of the turn"
+    yield "ripple", "power, peak to peak", f"{float(character['power_peak_to_peak_W']):.0f}", "W"
+    yield "force", f"peak pin force ({joint.replace('_', ' ')})", f"{forces[joint]:.0f}", "N"
