@@ -60,6 +60,8 @@ class Load(NamedTuple):
     rolling: float  # N, against any motion
     climb: float  # N, downhill
     drag: float  # N s^2/m^2
+    upright: float  # m/s^2, gravity's part across the road
+    along: float  # m/s^2, and down it
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -116,6 +118,8 @@ class Ride(Brief):
             rolling=road.rolling_resistance * weight * math.cos(road.angle),
             climb=weight * math.sin(road.angle),
             drag=road.drag,
+            upright=GRAVITY * math.cos(road.angle),
+            along=GRAVITY * math.sin(road.angle),
         )
 
     @property

@@ -15,10 +15,10 @@ import math
 from typing import Any, NamedTuple
 
 from fes_mj.common.machine_code import kept_machine_code, machine_code, sources
-from fes_mj.linkage.inertia import GRAVITY, CrankInertia
+from fes_mj.linkage.inertia import CrankInertia
 from fes_mj.moments.muscle_response import MUSCLES, Response, between, delivered, lead, place
 from fes_mj.riding.leg_table import LegTable
-from fes_mj.riding.ride import Ride
+from fes_mj.riding.ride import Load, Ride
 from fes_mj.riding.trace import Steps
 
 TOUCH = 1e-12  # m/s: rounding, by which a crank that has just caught up may be too fast or too slow
@@ -27,28 +27,14 @@ HALVINGS = 30  # of a step, to find an event in it
 COUNT = len(MUSCLES)
 
 
-class Vehicle(NamedTuple):
-    """What a ride's tricycle and road do. travel: c, m/rad. rolling, climb: N. drag: N s^2/m^2.
-
-    upright, along: the parts of gravity across the road and down it, m/s^2.
-    """
-
-    fixed: bool
-    travel: float
-    inertia: float
-    rolling: float
-    climb: float
-    drag: float
-    upright: float
-    along: float
-
-
 class System(NamedTuple):
-    """All that the equation of motion knows of a ride."""
+    """All that the equation of motion knows of a ride. travel: c, m/rad."""
 
     table: LegTable
     response: Response
-    vehicle: Vehicle
+    load: Load
+    fixed: bool
+    travel: float
     steps: Steps
 
 
@@ -77,10 +63,7 @@ class Mode(NamedTuple):
 
 def system(ride: Ride, steps: Steps) -> System:
     """The equation of motion of a ride."""
-    load, angle = ride.load, ride.road.angle
-    gravity = GRAVITY * math.cos(angle), GRAVITY * math.sin(angle)
-    vehicle = Vehicle(ride.fixed, ride.travel, load.inertia, load.rolling, load.climb, load.drag, *gravity)
-    return System(ride.table, Response.of(ride.moments, ride.lag), vehicle, steps)
+    return System(ride.table, Response.of(ride.moments, ride.lag), ride.load, ride.fixed, ride.travel, steps)
 
 
 @machine_code
@@ -114,7 +97,7 @@ def commands(system: System, angle: float, speed: float) -> tuple[float, float, 
 @machine_code
 def rates_of(system: System, state: State, mode: Mode) -> tuple[State, float]:
     """Rates of a state, and T where the transmission is engaged (N m), elsewhere the wheel's push (N)."""
-    table, response, vehicle, _ = system
+    table, response, load = system.table, system.response, system.load
     masses, speed, travelling = table.masses, state.crank_speed, state.speed
     row, part = place(state.crank_angle, len(table.ahead) - 1)
     inertia, recoil = between(masses.inertia, row, part), between(masses.recoil, row, part)
@@ -133,11 +116,11 @@ def rates_of(system: System, state: State, mode: Mode) -> tuple[State, float]:
         rate = between(table.joint_rate[muscle], row, part)
         drive += rate * delivered(response, muscle, moments[muscle], rate * speed)
     # the road is tilted by tilting gravity: backwards along it, and upright on it
-    weight = vehicle.upright * between(masses.height_rate, row, part) - vehicle.along * recoil
+    weight = load.upright * between(masses.height_rate, row, part) - load.along * recoil
     crank = drive - weight - between(masses.inertia_rate, row, part) / 2 * speed * speed
-    resistance = vehicle.rolling * mode.direction + vehicle.climb + vehicle.drag * travelling * abs(travelling)
+    resistance = load.rolling * mode.direction + load.climb + load.drag * travelling * abs(travelling)
     wheel = between(masses.recoil_rate, row, part) * speed * speed - resistance
-    travel, mass = vehicle.travel, vehicle.inertia
+    travel, mass = system.travel, load.inertia
     if mode.engaged:
         turning = 0.0
         if mode.direction != 0:
@@ -158,16 +141,16 @@ def rates_of(system: System, state: State, mode: Mode) -> tuple[State, float]:
 
 
 @machine_code
-def ended(vehicle: Vehicle, state: State, mode: Mode, push: float) -> bool:
+def ended(system: System, state: State, mode: Mode, push: float) -> bool:
     """Whether a mode is over: the tricycle comes to rest or is moved, the freewheel opens or closes."""
-    if mode.engaged and not vehicle.fixed and push < 0:
+    if mode.engaged and not system.fixed and push < 0:
         return True
-    if not mode.engaged and state.crank_speed * vehicle.travel > state.speed + TOUCH:
+    if not mode.engaged and state.crank_speed * system.travel > state.speed + TOUCH:
         return True
     if mode.direction != 0:
         return mode.direction * state.speed < 0
-    force = push / vehicle.travel - vehicle.climb if mode.engaged else push
-    return abs(force) > vehicle.rolling
+    force = push / system.travel - system.load.climb if mode.engaged else push
+    return abs(force) > system.load.rolling
 
 
 @machine_code
@@ -179,22 +162,22 @@ def driven(force: float, friction: float) -> int:
 @machine_code
 def mode_of(system: System, state: State) -> Mode:
     """The mode in which a state goes on."""
-    vehicle = system.vehicle
+    fixed, travel, load = system.fixed, system.travel, system.load
     direction = driven(state.speed, 0.0)
-    together = vehicle.fixed or state.crank_speed * vehicle.travel >= state.speed - TOUCH
+    together = fixed or state.crank_speed * travel >= state.speed - TOUCH
     if together and direction != 0:
         _, push = rates_of(system, state, Mode(True, direction))
-        return Mode(vehicle.fixed or push >= 0, direction)
+        return Mode(fixed or push >= 0, direction)
     if together:  # and stands
         _, push = rates_of(system, state, Mode(True, 0))
-        if vehicle.fixed or push >= 0:
-            return Mode(True, driven(push / vehicle.travel - vehicle.climb, vehicle.rolling))
+        if fixed or push >= 0:
+            return Mode(True, driven(push / travel - load.climb, load.rolling))
     if direction == 0:
         _, force = rates_of(system, state, Mode(False, 0))
-        direction = driven(force, vehicle.rolling)
+        direction = driven(force, load.rolling)
         if together and direction < 0:  # it rolls back, perhaps faster than the crank falls
             rates, _ = rates_of(system, state, Mode(False, direction))
-            if rates.crank_speed * vehicle.travel > rates.speed:
+            if rates.crank_speed * travel > rates.speed:
                 return Mode(True, direction)
     return Mode(False, direction)
 
@@ -215,11 +198,11 @@ def stepped(system: System, start: State, mode: Mode, time: float) -> tuple[Stat
 @machine_code
 def to_event(system: System, start: State, mode: Mode, longest: float) -> tuple[State, float]:
     """The state at which a mode is over within a step, and the time until then, s."""
-    vehicle, earliest, latest = system.vehicle, 0.0, longest
+    earliest, latest = 0.0, longest
     for _ in range(HALVINGS):
         time = (earliest + latest) / 2
         end, push = stepped(system, start, mode, time)
-        if ended(vehicle, end, mode, push):
+        if ended(system, end, mode, push):
             latest = time
         else:
             earliest = time
@@ -229,8 +212,8 @@ def to_event(system: System, start: State, mode: Mode, longest: float) -> tuple[
         speed = 0.0
         if mode.engaged:
             crank_speed = 0.0
-    if not mode.engaged and crank_speed * vehicle.travel > speed:
-        crank_speed = speed / vehicle.travel
+    if not mode.engaged and crank_speed * system.travel > speed:
+        crank_speed = speed / system.travel
     still = (end.distance, speed, end.muscle_work, end.road_work, end.answers)
     return State(end.crank_angle, crank_speed, *still), latest
 
@@ -253,7 +236,7 @@ def advance(
     clock: float,
     until: float,
     rows: Any,
-    version: int = sources(CrankInertia, LegTable, Steps),
+    version: int = sources(CrankInertia, LegTable, Load, Steps),
 ) -> tuple[int, State, Mode, float]:
     """Fill rows with SAMPLE at the start of each step, and at last at the end of the ride.
 
@@ -274,7 +257,7 @@ def advance(
             break
         time = min(longest_step(system, state, mode), until - clock)
         end, push = stepped(system, state, mode, time)
-        if ended(system.vehicle, end, mode, push):
+        if ended(system, end, mode, push):
             end, time = to_event(system, state, mode, time)
             mode = mode_of(system, end)
         state = end
