@@ -9,9 +9,9 @@ from typing import Any, NamedTuple
 from fes_mj.crosscheck.ride_case import RideCase
 from fes_mj.crosscheck.turn_case import Case, turn_summary
 from fes_mj.riding.ride import TRANSMISSIONS, Ride, Road
-from fes_mj.verification.energy import Audit, audit
+from fes_mj.verification import energy
 from fes_mj.verification.references import Curves, differences, exact_curves
-from fes_mj.verification.refinement import Refinement, refine
+from fes_mj.verification.refinement import refine
 
 STEEP = Road(slope=0.15)  # no leg climbs it: the tricycle stops and rolls back
 STEEP_DURATION = 3.0  # s
@@ -58,15 +58,8 @@ class VerificationCase(Case):
         steep = replace(ride, transmission="fixed", road=STEEP, duration=STEEP_DURATION)
         return [self.ride_case(one) for one in (*flat, steep)]
 
-    @cached_property
-    def audit(self) -> Audit:
-        """Where the work of the joint moments went."""
-        return audit(self)
-
-    @cached_property
-    def refinement(self) -> Refinement:
-        """The run at other time steps and loop stiffnesses."""
-        return refine(self)
+    audit = cached_property(energy.audit)  # where the work of the joint moments went
+    refinement = cached_property(refine)  # the run at other time steps and loop stiffnesses
 
     @cached_property
     def curves(self) -> dict[str, Curves]:

@@ -30,17 +30,15 @@ def report_html(
     Raises MissingPartError without the packages of the extra "report".
     """
     chains = compare_chains()
-    worst: dict[str, Check] = {}
-    for check in checks:
-        if check.name not in worst or check.factor > worst[check.name].factor:
-            worst[check.name] = check
+    names = dict.fromkeys(check.name for check in checks)
+    worst = [max((check for check in checks if check.name == name), key=lambda check: check.factor) for name in names]
     return page(
         Path(__file__).with_name("report.html.j2"),
         filters={"short": short, "fixed": fixed, "sentence": sentence},
         ok=all(check.ok for check in checks) and all(detection.caught for detection in detections),
         checks=checks,
         failed=[check for check in checks if not check.ok],
-        worst=[(definitions()[name], check) for name, check in worst.items()],
+        worst=[(definitions()[check.name], check) for check in worst],
         detections=detections,
         missed=[detection for detection in detections if not detection.caught],
         cases=cases,
