@@ -62,7 +62,7 @@ def fitted_speeds(design: Design) -> PerJoint[np.ndarray]:
     seats, _ = best_seats(design, thigh, shank, TABLE)
     batch = design.with_rider(thigh=thigh[:, None], shank=shank[:, None])
     turn = cycles(Seats(*(each[:, None] for each in seats)).moved(batch), TABLE)
-    return turn.travel.map(lambda travel: np.degrees(travel) * turns_per_second(design.linkage.cadence))
+    return turn.joints.map(lambda joint: np.degrees(joint.travel) * turns_per_second(design.linkage.cadence))
 
 
 def problem(target: str, statistic: str) -> Problem:

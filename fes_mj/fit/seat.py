@@ -99,8 +99,9 @@ def _outside(turn: Cycles) -> tuple[FloatArray, BoolArray]:
     """How far joints leave the moments' range, added up, rad, and whether both enter it; shape (designs,)."""
     total, inside = np.zeros(turn.turns.shape), np.ones(turn.turns.shape, bool)
     for joint, (bottom, top) in turn.reference.ranges.items():
-        shift = turn.reference.turns_to_range(joint, turn.low[joint], turn.high[joint])
-        low, high = turn.low[joint] + shift, turn.high[joint] + shift
+        low, high, *_ = turn.joints[joint]
+        shift = turn.reference.turns_to_range(joint, low, high)
+        low, high = low + shift, high + shift
         total += np.maximum(bottom - low, 0) + np.maximum(high - top, 0)
         inside &= (high > bottom) & (low < top)
     return total, inside

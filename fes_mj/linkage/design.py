@@ -214,14 +214,8 @@ class Design:
     @property
     def link_lengths(self) -> dict[str, Any]:
         """Origin-to-tip length of each body, m."""
-        lengths = {
-            "thigh": self.rider.thigh,
-            "shank": self.knee_to_pedal,
-            "crank": self.linkage.crank,
-            "rocker": self.linkage.rocker,
-            "coupler": self.linkage.coupler,
-        }
-        return {body: lengths[body] for body in self.linkage.architecture.bodies}
+        links = {body: getattr(self.linkage, body) for body in self.linkage.architecture.bodies[2:]}
+        return {"thigh": self.rider.thigh, "shank": self.knee_to_pedal, **links}
 
 
 def _arrays(part: Linkage | Rider) -> dict[str, NDArray[Any]]:

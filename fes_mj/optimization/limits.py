@@ -176,7 +176,7 @@ def motion_values(
     turn: Cycles, reference: ReferenceTricycle, speeds: PerJoint[FloatArray], gear_ratio: FloatArray
 ) -> FloatArray:
     """Values of the constraints on the turn but the ripple, in their order, shape (n, 11)."""
-    ranges = [np.degrees(side[joint]) for joint in JOINTS for side in (turn.low, turn.high)]
+    ranges = [np.degrees(side) for joint in turn.joints for side in (joint.low, joint.high)]
     rates = (speeds[joint] * gear_ratio for joint in JOINTS)
     overlaps = (_overlap(joint, turn, reference) for joint in JOINTS)
     return np.column_stack([turn.turning.reach, *ranges, *rates, *overlaps, gear_ratio, gear_ratio])
@@ -184,7 +184,7 @@ def motion_values(
 
 def _overlap(joint: str, turn: Cycles, reference: ReferenceTricycle) -> FloatArray:
     """How far a joint comes into the range of the moments, from whichever side, deg, shape (n,); not above 0: never."""
-    low, high = turn.low[joint], turn.high[joint]
+    low, high, *_ = turn.joints[joint]
     (bottom, top), shift = reference.ranges[joint], reference.turns_to_range(joint, low, high)
     overlap = np.degrees(np.minimum(high + shift - bottom, top - low - shift))
     # the angle beside a dead centre is too sharp for the parabola that found its extreme

@@ -169,7 +169,7 @@ class Problem:
             turn = cycles(ridden, self.table, self.points)
             # cadence and joint speeds are those at gear ratio 1
             cadence, riders = self._cadence_of_one, self.people.count
-            speeds = turn.travel.map(lambda travel: np.degrees(travel) * turns_per_second(cadence))
+            speeds = turn.joints.map(lambda joint: np.degrees(joint.travel) * turns_per_second(cadence))
             if chosen:
                 fastest = np.minimum(*(self.joint_speed[joint] / speeds[joint] for joint in JOINTS))
                 for_all = fastest.reshape(-1, riders).min(axis=1)

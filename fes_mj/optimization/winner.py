@@ -181,7 +181,7 @@ def assess(design: Design, compared_with: Design, moments: JointMoments, seed: i
         case=Case(design, moments),
         compared_with=compared_with,
         joint_speed=joint_speeds(design, table),
-        reversals=cycles(design, table).reversals.map(lambda count: int(count[0])),
+        reversals=cycles(design, table).joints.map(lambda joint: int(joint.reversals[0])),
         ripple=steady_ripple(Ride(design, moments, transmission="fixed")),
         gain=gain_over(design, compared_with, moments),
         manufacturing=to_manufacturing(design, table, random),

@@ -100,7 +100,7 @@ def slopes(design: Design, moments: JointMoments) -> dict[str, tuple[FloatArray,
         with_lengths(design, (lengths(design)[:, None] + shifts)[..., None]), uncertain_table(moments), _POINTS
     )
     power = turn.work * turns_per_second(design.linkage.cadence)
-    slowed = power * (turn.travel.knee[0] / turn.travel.knee)[:, None]
+    slowed = power * (turn.joints.knee.travel[0] / turn.joints.knee.travel)[:, None]
     by_held = {}
     for held, values in zip(HELD, (power, slowed), strict=True):
         slope = (values[1:10] - values[10:]) / (2 * STEP * _CM)

@@ -28,22 +28,33 @@ CYCLE_POINTS = len(SCAN)
 BLOCK_POSITIONS = 8000
 
 
+class JointTurn(NamedTuple):
+    """A joint over a turn of each design, shape (designs,) each, NaN for those that do not turn.
+
+    low, high, travel: rad, smallest and largest angle, and the way made. reversals: how often it turns round. work: J,
+    shape (designs, sets). variance: J^2, of the work, by not knowing the moments beyond their range.
+    """
+
+    low: FloatArray
+    high: FloatArray
+    travel: FloatArray
+    reversals: IntArray
+    work: FloatArray
+    variance: FloatArray
+
+
 @dataclass(frozen=True)
 class Cycles:
     """One turn of each design; NaN for those that do not turn.
 
     turning: which of them turn, and why the others do not.
-    low, high, travel: by joint, shape (designs,), rad: smallest and largest angle, and the way made in a turn.
-    reversals: by joint, shape (designs,), how often it turns round. work: shape (designs, sets), J a turn and leg.
-    outside_sd: shape (designs,), J, of the work, by not knowing the moments beyond their range
-    (extrapolation.extrapolation). angles: of the joints in blocks of designs, rad, shape (designs, points) each.
+    joints: what each does. work: shape (designs, sets), J a turn and leg. outside_sd: shape (designs,), J, of the work,
+    by not knowing the moments beyond their range (extrapolation.extrapolation). angles: of the joints in blocks of
+    designs, rad, shape (designs, points) each.
     """
 
     turning: BatchTurning
-    low: PerJoint[FloatArray]
-    high: PerJoint[FloatArray]
-    travel: PerJoint[FloatArray]
-    reversals: PerJoint[IntArray]
+    joints: PerJoint[JointTurn]
     work: FloatArray
     outside_sd: FloatArray
     angles: list[PerJoint[FloatArray]]
@@ -87,17 +98,6 @@ class _Block(NamedTuple):
     reversals: PerJoint[Reversals]
 
 
-class _JointTurn(NamedTuple):
-    """As Cycles has it of one joint; variance: of its work, J^2, by not knowing the moments beyond their range."""
-
-    low: FloatArray
-    high: FloatArray
-    travel: FloatArray
-    reversals: IntArray
-    work: FloatArray
-    variance: FloatArray
-
-
 def cycles(design: Design, table: WorkTable, points: int = CYCLE_POINTS) -> Cycles:
     """Turn a batch of designs: any number of the linkage or the rider may be an array of shape (designs, 1).
 
@@ -113,7 +113,7 @@ def cycles(design: Design, table: WorkTable, points: int = CYCLE_POINTS) -> Cycl
     )
     turns = turning.turns
 
-    def of_joint(joint: str) -> _JointTurn:
+    def of_joint(joint: str) -> JointTurn:
         parts = [block.reversals[joint] for block in blocks]
         rows = np.concatenate([part.design + size * number for number, part in enumerate(parts)])
         angle, sign = (np.concatenate(columns) for columns in zip(*(part[1:] for part in parts), strict=True))
@@ -122,10 +122,7 @@ def cycles(design: Design, table: WorkTable, points: int = CYCLE_POINTS) -> Cycl
     joints = PerJoint.of(of_joint)
     return Cycles(
         turning,
-        low=joints.map(lambda joint: joint.low),
-        high=joints.map(lambda joint: joint.high),
-        travel=joints.map(lambda joint: joint.travel),
-        reversals=joints.map(lambda joint: joint.reversals),
+        joints,
         work=joints.knee.work + joints.hip.work,
         outside_sd=np.sqrt(joints.knee.variance + joints.hip.variance),
         angles=[block.angles for block in blocks],
@@ -136,11 +133,10 @@ def cycles(design: Design, table: WorkTable, points: int = CYCLE_POINTS) -> Cycl
 def joint_speeds(design: Design, table: WorkTable) -> PerJoint[float]:
     """Mean absolute speed of knee and hip over a turn at the design's own cadence, deg/s."""
     turns = turns_per_second(design.linkage.cadence)
-    return cycles(design, table).travel.map(lambda travel: math.degrees(float(travel[0])) * turns)
+    return cycles(design, table).joints.map(lambda joint: math.degrees(float(joint.travel[0])) * turns)
 
 
-def _joint_turn(joint: str, reversals: Reversals, turns: BoolArray, table: WorkTable) -> _JointTurn:
-    """Of all designs, NaN for those that do not turn."""
+def _joint_turn(joint: str, reversals: Reversals, turns: BoolArray, table: WorkTable) -> JointTurn:
     reference, count, (rows, angle, sign) = table.measured_on, len(turns), reversals
     low, high = np.full((2, count), np.nan)
     np.fmin.at(low, rows, angle)
@@ -155,7 +151,7 @@ def _joint_turn(joint: str, reversals: Reversals, turns: BoolArray, table: WorkT
         variance += 2 * (table.spread[joint] * drift) ** 2  # in extension and in flexion, independently
     for values in (low, high, travel, work, variance):
         values[~turns] = np.nan
-    return _JointTurn(low, high, travel, number, work, variance)
+    return JointTurn(low, high, travel, number, work, variance)
 
 
 def _block(design: Design, crank_angle: FloatArray) -> _Block:

@@ -71,10 +71,9 @@ def equilibrium(
             if body in pair:
                 sign = 1.0 if pair[1] == body else -1.0
                 lever = arm(motion, body, point)
-                matrix[:, 3 * row, 2 * column] = sign
-                matrix[:, 3 * row + 1, 2 * column + 1] = sign
-                matrix[:, 3 * row + 2, 2 * column] = -sign * lever.imag
-                matrix[:, 3 * row + 2, 2 * column + 1] = sign * lever.real
+                xy = slice(2 * column, 2 * column + 2)
+                matrix[:, 3 * row : 3 * row + 2, xy] = sign * np.eye(2)
+                matrix[:, 3 * row + 2, xy] = sign * np.stack([-lever.imag, lever.real], axis=-1)
         if body in couple:
             right[:, 3 * row + 2] = -couple[body]
         if loads:

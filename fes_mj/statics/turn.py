@@ -93,10 +93,7 @@ class QuasiStatic(Brief):
 
         None for a user's own moments, of whose error nothing is known.
         """
-        covariance = self.moments.covariance
-        if covariance is None:
-            return None
-        return math.hypot(standard_deviation(self.power_weights, covariance), self.extrapolation.sd)
+        return difference_sd(self, self, 0.0)
 
     @cached_property
     def extrapolation(self) -> Extrapolation:

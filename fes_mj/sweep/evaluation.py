@@ -101,9 +101,9 @@ def _static(design: Design, values: Columns, moments: JointMoments, count: int) 
     }
     for joint in JOINTS:
         result |= {
-            f"{joint}_min_deg": np.degrees(turn.low[joint]),
-            f"{joint}_max_deg": np.degrees(turn.high[joint]),
-            f"mean_{joint}_speed_deg_s": np.degrees(turn.travel[joint]) * turns_per_s,
+            f"{joint}_min_deg": np.degrees(turn.joints[joint].low),
+            f"{joint}_max_deg": np.degrees(turn.joints[joint].high),
+            f"mean_{joint}_speed_deg_s": np.degrees(turn.joints[joint].travel) * turns_per_s,
         }
     return result
 

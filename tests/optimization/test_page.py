@@ -53,8 +53,8 @@ def test_the_page_needs_no_network_and_shows_smoothness(html: str) -> None:
     exact = case.reference_power()
     low, high = re.search(r"lowest to highest, W ([+-]\d+) to ([+-]\d+)", text).groups()  # type: ignore[union-attr]
     assert (float(low), float(high)) == pytest.approx((exact.min(), exact.max()), abs=1)
-    reversals = cycles(case.design, WorkTable.of(MOMENTS)).reversals
-    assert f"reversals of knee and hip in a turn {reversals.knee[0]}, {reversals.hip[0]} " in text
+    knee, hip = cycles(case.design, WorkTable.of(MOMENTS)).joints
+    assert f"reversals of knee and hip in a turn {knee.reversals[0]}, {hip.reversals[0]} " in text
 
 
 def test_every_objective_of_the_front_is_drawn_and_tabled(html: str, front: Front) -> None:

@@ -27,8 +27,8 @@ def test_work_is_that_of_the_quasi_static_solver(design: fes_mj.Design, moments:
     exact = quasi_static(design, moments, points=FINE)
     turn = cycles(design, WorkTable.of(moments))
     assert turn.work[0, 0] == pytest.approx(exact.work_per_turn, rel=2e-5)
-    assert np.degrees(turn.low.knee[0]) == pytest.approx(np.degrees(exact.joint_angle.knee.min()), abs=1e-3)
-    assert np.degrees(turn.high.hip[0]) == pytest.approx(np.degrees(exact.joint_angle.hip.max()), abs=1e-3)
+    assert np.degrees(turn.joints.knee.low[0]) == pytest.approx(np.degrees(exact.joint_angle.knee.min()), abs=1e-3)
+    assert np.degrees(turn.joints.hip.high[0]) == pytest.approx(np.degrees(exact.joint_angle.hip.max()), abs=1e-3)
 
 
 def test_work_of_moments_nobody_fitted(design: fes_mj.Design, smooth_moments: fes_mj.JointMoments) -> None:
@@ -121,10 +121,10 @@ def test_a_batch_is_its_designs_one_by_one(name: str, moments: fes_mj.JointMomen
     for row in np.flatnonzero(reaching)[:20]:
         alone = cycles(batch.single(int(row)), table)
         assert together.work[row, 0] == pytest.approx(alone.work[0, 0], rel=1e-12)
-        assert together.low.hip[row] == pytest.approx(alone.low.hip[0], rel=1e-12)
+        assert together.joints.hip.low[row] == pytest.approx(alone.joints.hip.low[0], rel=1e-12)
     for row in np.flatnonzero(~reaching)[:20]:
         assert np.isnan(together.work[row]).all()
-        assert np.isnan(together.travel.knee[row])
+        assert np.isnan(together.joints.knee.travel[row])
         with pytest.raises(fes_mj.AssemblyError):
             turning(batch.single(int(row)))
 
