@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator
+from operator import attrgetter
 
 import mujoco
 import numpy as np
@@ -18,7 +19,7 @@ from fes_mj.simulation.mjcf import CUTS
 FIELDS = (
     *("body_pos", "body_quat", "body_mass", "body_inertia", "body_ipos", "jnt_axis", "jnt_pos", "qpos0"),
     *("eq_data", "eq_solref", "eq_solimp", "site_pos", "actuator_gear", "actuator_gainprm", "actuator_biasprm"),
-    *("key_qpos", "key_qvel", "key_ctrl"),
+    *("key_qpos", "key_qvel", "key_ctrl", "opt.timestep", "opt.gravity"),
 )
 
 
@@ -67,10 +68,7 @@ def tilt(data: mujoco.MjData) -> float:
 def file_difference(case: Case) -> float:
     """Largest difference of any number between the model and the one read back from its own file."""
     model, again = case.steps.spec().compile(), mujoco.MjModel.from_xml_string(mjcf_text(case.steps.spec()))
-    pairs = [(getattr(model, field), getattr(again, field)) for field in FIELDS]
-    pairs.append(
-        (np.array([model.opt.timestep, *model.opt.gravity]), np.array([again.opt.timestep, *again.opt.gravity]))
-    )
+    pairs = [(field(model), field(again)) for field in map(attrgetter, FIELDS)]
     if any(np.shape(one) != np.shape(other) for one, other in pairs):
         return math.inf
     return max(float(np.abs(one - other).max(initial=0.0)) for one, other in pairs)
