@@ -16,6 +16,11 @@ from fes_mj.common.reading import DATA
 from fes_mj.common.text import printable
 
 
+def versions(*packages: str) -> dict[str, str]:
+    """Installed version by the name of a package."""
+    return {package: version(package) for package in packages}
+
+
 def provenance(inputs: Iterable[Path] = (), packages: Iterable[str] = ()) -> dict[str, Any]:
     """Versions (also of `packages`), command line with the program's bare name, SHA-256 of every input file by name."""
     program = Path(sys.argv[0])
@@ -23,7 +28,7 @@ def provenance(inputs: Iterable[Path] = (), packages: Iterable[str] = ()) -> dic
     return {
         "fes_mj": version("fes-mj"),
         "python": platform.python_version(),
-        **{package: version(package) for package in ("mujoco", "numpy", "scipy", *packages)},
+        **versions("mujoco", "numpy", "scipy", *packages),
         "command": printable(shlex.join([name, *sys.argv[1:]])),
         "inputs": {_name(path): hashlib.sha256(path.read_bytes()).hexdigest() for path in inputs},
     }

@@ -3,7 +3,6 @@
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from importlib.metadata import version
 from typing import Any, ClassVar
 
 import mujoco
@@ -12,6 +11,7 @@ import numpy as np
 from fes_mj.common.arrays import FloatArray
 from fes_mj.common.brief import Brief
 from fes_mj.common.checks import LEAST_POWER, Check, check
+from fes_mj.common.provenance import versions
 from fes_mj.common.writing import csv_text
 from fes_mj.riding.ride import Ride
 from fes_mj.riding.trace import Trace, ride as ride_by_equation
@@ -108,7 +108,7 @@ class RideCase(Brief):
             "energy_lost_J": self.simulation.lost,
             "loop_gap_max_m": self.simulation.loop_gap_max,
             "timestep_s": self.timestep,
-            "versions": {name: version(name) for name in ("fes-mj", "mujoco", "numpy")},
+            "versions": versions("fes-mj", "mujoco", "numpy"),
         }
 
     def trace_csv(self) -> str:

@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from importlib.metadata import version
 from typing import Any
 
 import numpy as np
@@ -10,6 +9,7 @@ import numpy as np
 from fes_mj.common.arrays import FloatArray
 from fes_mj.common.brief import Brief
 from fes_mj.common.checks import LEAST_POWER, Check, check
+from fes_mj.common.provenance import versions
 from fes_mj.common.units import RPM
 from fes_mj.common.writing import csv_text
 from fes_mj.crosscheck.pipeline import Pipeline, Setup
@@ -167,7 +167,7 @@ def turn_summary(case: Case) -> dict[str, Any]:
         "timestep_s": run.timestep,
         "loop_force_max_N": {loop: float(np.abs(force).max()) for loop, force in run.loop_force.items()},
         "energy_J": run.energy.as_json(),
-        "versions": {name: version(name) for name in ("fes-mj", "mujoco", "numpy")},
+        "versions": versions("fes-mj", "mujoco", "numpy"),
     }
 
 

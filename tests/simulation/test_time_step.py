@@ -1,5 +1,7 @@
 """The step is chosen beforehand: what is predicted is what is measured, and what cannot be run is refused."""
 
+import math
+
 import mujoco
 import numpy as np
 import pytest
@@ -11,7 +13,14 @@ from fes_mj.crosscheck.turn_case import Case
 from fes_mj.linkage.assembly import clearances
 from fes_mj.simulation import time_step
 from fes_mj.simulation.mjcf import ModelOptions
-from fes_mj.simulation.time_step import FEWEST_STEPS, LOOSE_STEPS, MOST_STEPS, loose_steps, steps_per_turn
+from fes_mj.simulation.time_step import (
+    FEWEST_STEPS,
+    LOOSE_STEPS,
+    MOST_STEPS,
+    loose_steps,
+    predicted_errors,
+    steps_per_turn,
+)
 from studies.random_linkages import random_design
 
 
@@ -105,3 +114,22 @@ def test_a_glance_that_shows_no_error_decides_as_the_whole_rule_does(monkeypatch
     monkeypatch.setattr(time_step, "WELL_WITHIN", -1.0)
     assert quick == steps()
     assert 4 < quick.count(FEWEST_STEPS) < 22
+
+
+@pytest.mark.parametrize("name", ["trt", "r2", "d1", "d2"])
+@pytest.mark.parametrize("steps", [720, 1440])
+def test_the_predicted_error_is_the_measured_one(name: str, steps: int) -> None:
+    """Power curve and loop gap, from the closed form and from MuJoCo, of legs that hang: it knows no joint moments."""
+    design, still = fes_mj.load_design(name), np.zeros(2)
+    cadence = design.linkage.cadence
+    idle = fes_mj.JointMoments("idle", np.array([0.0, 3.0]), still, still)
+    case = Case(design, idle, timestep=2 * math.pi / cadence / steps)
+    predicted = predicted_errors(design, cadence, 2 * math.pi / steps)
+    assert len(case.simulation.crank_angle) == steps
+    assert case.rms_per_leg(case.simulation) == pytest.approx(predicted.inverse_dynamics, rel=0.02)
+    assert case.simulation.loop_gap_max == pytest.approx(predicted.loop_gap, rel=0.02)
+
+
+def test_errors_are_of_second_order() -> None:
+    coarse, fine = (predicted_errors(fes_mj.load_design("d1"), 10.0, 2 * np.pi / n) for n in (4000, 8000))
+    assert np.divide(coarse, fine) == pytest.approx(4, rel=0.01)
