@@ -9,7 +9,7 @@ from fes_mj.common.style import hex_colour
 from fes_mj.linkage.assembly import DYADS, LEAST_CLEARANCE, clearances
 from fes_mj.linkage.design import BODIES, Design
 from fes_mj.linkage.kinematics import close_dyad, positions
-from fes_mj.simulation.appearance import PARTS, Bar, back_to_front
+from fes_mj.linkage.shapes import PARTS, Bar, back_to_front
 
 Ends = dict[str, tuple[ComplexArray, ComplexArray]]  # body -> its origin and tip over crank angle, m
 

@@ -17,10 +17,11 @@ from fes_mj.common.writing import csv_text, require_replaceable, require_writabl
 from fes_mj.linkage import kinematics
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.legs import LEGS
+from fes_mj.linkage.shapes import lowest_point
 from fes_mj.linkage.turning import FROM_TOP, turning
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.torque_map import torque_map
-from fes_mj.simulation.appearance import FIELD_OF_VIEW, Spec, framing, lowest_point
+from fes_mj.simulation.appearance import FIELD_OF_VIEW, Spec, framing
 from fes_mj.simulation.road_mjcf import ROAD
 from fes_mj.simulation.variants import variant_model, variant_options
 from fes_mj.statics.equilibrium import crank_moment

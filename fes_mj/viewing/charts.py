@@ -15,7 +15,7 @@ from fes_mj.common.style import COLOURS, CRANK_LABEL, INK, LINKS, STYLE, X_LABEL
 from fes_mj.crosscheck.turn_case import Case
 from fes_mj.linkage.design import BODIES, Design
 from fes_mj.linkage.kinematics import FULL_TURN, positions, solve
-from fes_mj.simulation.appearance import back_to_front
+from fes_mj.linkage.shapes import back_to_front
 
 PLOTTED = 720  # points of a curve at most
 # Of pages: text stays readable at the width of a phone

@@ -15,7 +15,8 @@ from fes_mj.common.errors import InputError, MissingPartError, require_extra
 from fes_mj.common.writing import replacing
 from fes_mj.crosscheck.ride_case import RideCase
 from fes_mj.crosscheck.turn_case import Case
-from fes_mj.simulation.appearance import Spec, lowest_point
+from fes_mj.linkage.shapes import lowest_point
+from fes_mj.simulation.appearance import Spec
 from fes_mj.simulation.bench import Simulation
 from fes_mj.simulation.mjcf import build_mjcf
 from fes_mj.simulation.road import RoadRun

@@ -13,8 +13,10 @@ from fes_mj.linkage import kinematics
 from fes_mj.linkage.assembly import bounding_box
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.inertia import foot_points
+from fes_mj.linkage.joints import JOINTS
 from fes_mj.linkage.legs import LEGS, Leg
-from fes_mj.simulation.appearance import PARTS, Spec, bars
+from fes_mj.linkage.shapes import PARTS, bars
+from fes_mj.simulation.appearance import Spec
 
 SIDE = 720  # pixels; pictures are square
 # Drawn so many times as large and reduced, without MuJoCo's own smoothing of edges, which takes longer.
@@ -171,7 +173,7 @@ def _overlay(design: Design, camera: Camera, speed: float) -> Any:
     widths = [_SWATCH + draw.textlength(name, small) + _GAP for name in names]
     starts = (SIDE - sum(widths) + _GAP) / 2 + np.cumsum([0, *widths[:-1]])
     for name, start in zip(names, starts.tolist(), strict=True):
-        joint = PARTS[name].shape == mujoco.mjtGeom.mjGEOM_CYLINDER
+        joint = name in JOINTS
         width, height = (14, 14) if joint else (18, 8)
         box = (start, _KEY - height / 2, start + width, _KEY + height / 2)
         (draw.ellipse if joint else draw.rectangle)(box, fill=hex_colour(PARTS[name].colour))

@@ -8,8 +8,8 @@ from fes_mj.explore.pose import as_json, ends, failing_angle
 from fes_mj.linkage.assembly import DYADS, clearances
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.kinematics import positions
+from fes_mj.linkage.shapes import bars
 from fes_mj.linkage.variables import replaced
-from fes_mj.simulation.appearance import bars
 
 ANGLES = np.radians(np.arange(360.0))
 # Too long to close stretched, too short to close folded, and a leg out of reach.
