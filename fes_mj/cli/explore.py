@@ -23,14 +23,10 @@ def explore(
 ) -> int:
     """Drag the dimensions of a design in the browser and see at once what they do, until Ctrl-C.
 
-    Parameters
-    ----------
-    port
-        Of the page on this machine; 0 takes any that is free.
-    host
-        Address to listen on. Any but the default can be reached by others, who need no password.
-    browser
-        Open the page in the browser.
+    Args:
+        port: Of the page on this machine; 0 takes any that is free.
+        host: Address to listen on. Any but the default can be reached by others, who need no password.
+        browser: Open the page in the browser.
     """
     loaded, moments = load_design(design), options.load_moments()
     from fes_mj.explore.answers import Answers

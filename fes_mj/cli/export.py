@@ -24,18 +24,14 @@ def export(
 ) -> int:
     """Write the MJCF model of a design and, beside it as CSV, its joint and crank moments over a turn.
 
-    Parameters
-    ----------
-    out
-        The model to write (.xml); the table gets the same name with .csv.
-    variant
-        sites: loops anchored at sites (default); bodies: on bodies, for Drake; passive: nothing drives, neither joint
-        motors nor servo; free: motors, but nothing on the crank; brake: a flywheel and a brake on it in place of the
-        servo; ride: both legs on a tricycle that rides on a flat road with a freewheel; fixed-gear: that one without
-        the freewheel; two-legs: as --legs 2; compatible: for readers without the integrator `discrete`, a flywheel
-        holds the cadence. Give --variant again to combine them.
-    scene
-        Also write scene.xml beside the model: floor, light and camera.
+    Args:
+        out: The model to write (.xml); the table gets the same name with .csv.
+        variant: sites: loops anchored at sites (default); bodies: on bodies, for Drake; passive: nothing drives,
+            neither joint motors nor servo; free: motors, but nothing on the crank; brake: a flywheel and a brake on it
+            in place of the servo; ride: both legs on a tricycle that rides on a flat road with a freewheel; fixed-gear:
+            that one without the freewheel; two-legs: as --legs 2; compatible: for readers without the integrator
+            `discrete`, a flywheel holds the cadence. Give --variant again to combine them.
+        scene: Also write scene.xml beside the model: floor, light and camera.
     """
     from fes_mj.simulation.export import export as export_model
     from fes_mj.simulation.variants import variant_options

@@ -45,18 +45,13 @@ _Degrees = Annotated[tuple[float, float], Parameter(group=_OF_SEAT, negative="",
 class RiderOptions:
     """Who rides: by default the design's own rider.
 
-    Parameters
-    ----------
-    thigh
-        Thigh in m, from hip to knee; with --shank.
-    shank
-        Shank in m as in design files, from the knee to the level of the pedal axle: to the ankle and 10.5 cm more.
-    stature
-        Stature in m instead, for legs of the median's proportions; with --sex.
-    percentile
-        Percentile of thigh, shank and mass instead, above 0 and below 100; with --sex.
-    sex
-        Whose statures or percentiles.
+    Args:
+        thigh: Thigh in m, from hip to knee; with --shank.
+        shank: Shank in m as in design files, from the knee to the level of the pedal axle: to the ankle and 10.5 cm
+            more.
+        stature: Stature in m instead, for legs of the median's proportions; with --sex.
+        percentile: Percentile of thigh, shank and mass instead, above 0 and below 100; with --sex.
+        sex: Whose statures or percentiles.
     """
 
     thigh: Annotated[float | None, Parameter(group=(_OF_RIDER, _LEG, _WHO), validator=bounds("thigh"))] = None
@@ -87,14 +82,10 @@ class RiderOptions:
 class SeatOptions:
     """How far the seat moves from where it is drawn: least and most of each.
 
-    Parameters
-    ----------
-    forward
-        Towards the crank, m.
-    up
-        In height, m.
-    recline
-        Change of the seat angle, deg.
+    Args:
+        forward: Towards the crank, m.
+        up: In height, m.
+        recline: Change of the seat angle, deg.
     """
 
     forward: _Metres = (-0.05, 0.30)
@@ -133,20 +124,14 @@ def fit(
 
     That no seat within the limits suits is a result as well: what lacks, where in the turn, and what would help.
 
-    Parameters
-    ----------
-    cadence
-        Crank speed in rpm for which the seat is sought; by default the one at which the tricycle does 5.71 km/h.
-    out
-        The design file to write (.toml): the rider, and the seat where it was moved to.
-    population
-        Instead of one rider a sample of men and women: who can ride, with which power.
-    samples
-        People of each sex.
-    seed
-        Of the random numbers.
-    plot
-        A picture (.png) of the power over thigh and shank.
+    Args:
+        cadence: Crank speed in rpm for which the seat is sought; by default the one at which the tricycle does 5.71
+            km/h.
+        out: The design file to write (.toml): the rider, and the seat where it was moved to.
+        population: Instead of one rider a sample of men and women: who can ride, with which power.
+        samples: People of each sex.
+        seed: Of the random numbers.
+        plot: A picture (.png) of the power over thigh and shank.
     """
     loaded, joint_moments, limits = load_design(design, dims), moments.load_moments(), seat.load()
     inputs, ratio = moments.inputs(design), loaded.linkage.gear_ratio

@@ -26,14 +26,10 @@ def moments(
 ) -> int:
     """Show what is understood of a file of joint moments, and warn of what looks misread.
 
-    Parameters
-    ----------
-    file
-        A CSV with the header crank_angle_deg,knee_Nm,hip_Nm, a measurement file (.toml), p1p2 or p1p3.
-    plot
-        Draw the moments over crank angle and over joint angle (.png or .svg).
-    out
-        Write them as plain CSV, a row a degree from top dead centre.
+    Args:
+        file: A CSV with the header crank_angle_deg,knee_Nm,hip_Nm, a measurement file (.toml), p1p2 or p1p3.
+        plot: Draw the moments over crank angle and over joint angle (.png or .svg).
+        out: Write them as plain CSV, a row a degree from top dead centre.
     """
     path = None if file in GROUPS else Path(file)
     inputs = measured_files(path) if path else []

@@ -38,15 +38,11 @@ def optimize(
     command goes on: what is known stands in the folder BEST.search beside the file, which is gone at the end. Finished
     searches are not done again.
 
-    Parameters
-    ----------
-    kind
-        Which six-bar: crt (pedal on the rocker) or cdt (pedal on the coupler).
-    out
-        The design file to write (.toml), with the command that finds it again; its model (.xml), and the front (.csv),
-        appear beside it. A file that was there is replaced at the end.
-    report
-        A page on the design (.html): numbers, motion, power, constraints.
+    Args:
+        kind: Which six-bar: crt (pedal on the rocker) or cdt (pedal on the coupler).
+        out: The design file to write (.toml), with the command that finds it again; its model (.xml), and the front
+            (.csv), appear beside it. A file that was there is replaced at the end.
+        report: A page on the design (.html): numbers, motion, power, constraints.
     """
     options.check()
     _check_files(out, report, options)

@@ -65,13 +65,10 @@ class Loaded(NamedTuple):
 class MomentsOptions:
     """Whose joint moments.
 
-    Parameters
-    ----------
-    group
-        Rider group whose recovered joint moments are used (default p1p2).
-    moments
-        Your own joint moments instead: a CSV with the header crank_angle_deg,knee_Nm,hip_Nm (crank angle from top
-        dead centre), or a measurement file (.toml). With two legs given twice, the right leg's first.
+    Args:
+        group: Rider group whose recovered joint moments are used (default p1p2).
+        moments: Your own joint moments instead: a CSV with the header crank_angle_deg,knee_Nm,hip_Nm (crank angle from
+            top dead centre), or a measurement file (.toml). With two legs given twice, the right leg's first.
     """
 
     group: Annotated[Literal["p1p2", "p1p3"] | None, Parameter(group=_WHOSE)] = None
@@ -100,12 +97,9 @@ class MomentsOptions:
 class PrintOptions:
     """What is printed.
 
-    Parameters
-    ----------
-    json
-        Print one JSON object and nothing else.
-    quiet
-        Print nothing but errors and warnings.
+    Args:
+        json: Print one JSON object and nothing else.
+        quiet: Print nothing but errors and warnings.
     """
 
     json: Flag = False
@@ -136,14 +130,11 @@ class PrintOptions:
 class LoadOptions(MomentsOptions):
     """Options of every command that needs a design in motion.
 
-    Parameters
-    ----------
-    cadence
-        Crank speed in rpm; by default the one at which the tricycle does 5.71 km/h.
-    legs
-        One leg, or two half a turn apart on the same crank.
-    torque_velocity
-        Let joint moments change with joint speed, by Hill's relation; by default they do not, as in the paper.
+    Args:
+        cadence: Crank speed in rpm; by default the one at which the tricycle does 5.71 km/h.
+        legs: One leg, or two half a turn apart on the same crank.
+        torque_velocity: Let joint moments change with joint speed, by Hill's relation; by default they do not, as in
+            the paper.
     """
 
     cadence: Cadence | None = None
@@ -164,10 +155,8 @@ class LoadOptions(MomentsOptions):
 class RunOptions(PrintOptions, LoadOptions):
     """Options of every command that runs a design.
 
-    Parameters
-    ----------
-    verbose
-        Print more: energies, joint forces, the whole error budget.
+    Args:
+        verbose: Print more: energies, joint forces, the whole error budget.
     """
 
     verbose: Annotated[bool, Parameter(alias="-v", negative="")] = False

@@ -19,14 +19,10 @@ def reproduce(
 ) -> int:
     """Compute the paper's tables and figures and write them beside the project's own.
 
-    Parameters
-    ----------
-    out
-        Folder for the pages (Markdown), figures (PNG) and numbers (JSON); it is made if its parent exists.
-    svg
-        Figures as SVG too, for print.
-    quiet
-        Print nothing but errors.
+    Args:
+        out: Folder for the pages (Markdown), figures (PNG) and numbers (JSON); it is made if its parent exists.
+        svg: Figures as SVG too, for print.
+        quiet: Print nothing but errors.
     """
     require_extra("paper", "matplotlib", "SALib")
     make_folder(out, "the results")

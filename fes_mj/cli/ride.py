@@ -35,32 +35,20 @@ _TRICYCLE = Group("Tricycle and road")
 class RideOptions(PrintOptions, MomentsOptions):
     """A ride.
 
-    Parameters
-    ----------
-    transmission
-        freewheel: the crank pushes the wheel, the wheel runs ahead of it; fixed: the two turn together.
-    slope
-        Of the road, in percent; uphill is positive.
-    launch
-        Speed at the start in km/h; by default 5.71.
-    from_rest
-        Start from rest instead, at this crank angle in degrees.
-    duration
-        Of the ride, in s.
-    torque_velocity
-        Let joint moments change with joint speed by Hill's relation, or not. Without it there is no sensible steady
-        speed on the flat.
-    lag
-        Time constant in s with which the muscles follow the stimulation. The stimulation makes good what the tricycle
-        of the measurement lags at its cadence, and is timed ahead for the actual one.
-    tricycle_mass
-        Of the tricycle with its wheels, in kg, without crank and linkage.
-    rolling_mass
-        Of its rims, in kg, which count twice when it accelerates.
-    crr
-        Coefficient of rolling resistance.
-    drag_area
-        Drag coefficient times frontal area, in m2.
+    Args:
+        transmission: freewheel: the crank pushes the wheel, the wheel runs ahead of it; fixed: the two turn together.
+        slope: Of the road, in percent; uphill is positive.
+        launch: Speed at the start in km/h; by default 5.71.
+        from_rest: Start from rest instead, at this crank angle in degrees.
+        duration: Of the ride, in s.
+        torque_velocity: Let joint moments change with joint speed by Hill's relation, or not. Without it there is no
+            sensible steady speed on the flat.
+        lag: Time constant in s with which the muscles follow the stimulation. The stimulation makes good what the
+            tricycle of the measurement lags at its cadence, and is timed ahead for the actual one.
+        tricycle_mass: Of the tricycle with its wheels, in kg, without crank and linkage.
+        rolling_mass: Of its rims, in kg, which count twice when it accelerates.
+        crr: Coefficient of rolling resistance.
+        drag_area: Drag coefficient times frontal area, in m2.
     """
 
     transmission: Annotated[Literal["freewheel", "fixed"], Parameter(group=_TRICYCLE)] = "freewheel"
@@ -111,15 +99,11 @@ def ride(
 ) -> int:
     """Ride a design on a road, in MuJoCo and by the reduced equation of motion; exit code 1 if the two disagree.
 
-    Parameters
-    ----------
-    starts
-        Also find from which crank angles it starts from rest, the launch it needs and the slope it climbs.
-    out
-        Folder for the result (JSON), the ride (CSV), the model (MJCF) and, with --starts, a picture (SVG); it is made
-        if its parent exists.
-    render
-        Write a video (.mp4) of the ride beside speed and crank power.
+    Args:
+        starts: Also find from which crank angles it starts from rest, the launch it needs and the slope it climbs.
+        out: Folder for the result (JSON), the ride (CSV), the model (MJCF) and, with --starts, a picture (SVG); it is
+            made if its parent exists.
+        render: Write a video (.mp4) of the ride beside speed and crank power.
     """
     loaded, inputs = options.load(design), options.inputs(design)
     require_writable(render, "the video", ".mp4", inputs)

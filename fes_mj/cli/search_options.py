@@ -28,43 +28,27 @@ _WITHOUT_EFFECT = ("json", "quiet", "jobs", "cluster")  # on what is found
 class SearchOptions(PrintOptions, MomentsOptions):
     """Options of a search.
 
-    Parameters
-    ----------
-    method
-        The method; cma-es and nsga-ii come with the extra `optimize`, and nsga-ii weighs both groups.
-    budget
-        Evaluations of each search (default 50,000; random pursuit stops by itself).
-    searches
-        Independent searches, of which the best counts (nsga-ii makes one).
-    seed
-        Of the random numbers; the same seed finds the same design, however many jobs.
-    start
-        A feasible design to start from (trt, r1, ..., or a file); by default random ones.
-    speeds_of
-        The design whose mean joint speeds are the limits, and whose power is compared.
-    knee_speed_limit
-        Largest mean absolute knee speed in deg/s instead (107.1 in the TRT).
-    hip_speed_limit
-        Largest mean absolute hip speed in deg/s instead (69.1 in the TRT).
-    ripple_limit
-        Largest ripple of the crank speed in %, (largest - smallest) / mean, on a tricycle with two legs and fixed gear.
-    caution
-        Take so many standard deviations of the gain off it: finds designs that win for sure (not with --moments).
-    riders
-        Whose power counts: the design's own rider's, or that of a sample of people, each with the seat moved within
-        the limits of `fes_mj fit`: in the mean (population), or what 9 of 10 have (population-p10).
-    samples
-        People of each sex.
-    sample_seed
-        Of the sample's random numbers.
-    smooth
-        With nsga-ii: also the least coefficient of fluctuation.
-    problem
-        Your own limits, search ranges and design space: an edited copy of optimization.toml.
-    jobs
-        Processes; each search is a task.
-    cluster
-        Dask scheduler, tcp://host:port, to send the searches to.
+    Args:
+        method: The method; cma-es and nsga-ii come with the extra `optimize`, and nsga-ii weighs both groups.
+        budget: Evaluations of each search (default 50,000; random pursuit stops by itself).
+        searches: Independent searches, of which the best counts (nsga-ii makes one).
+        seed: Of the random numbers; the same seed finds the same design, however many jobs.
+        start: A feasible design to start from (trt, r1, ..., or a file); by default random ones.
+        speeds_of: The design whose mean joint speeds are the limits, and whose power is compared.
+        knee_speed_limit: Largest mean absolute knee speed in deg/s instead (107.1 in the TRT).
+        hip_speed_limit: Largest mean absolute hip speed in deg/s instead (69.1 in the TRT).
+        ripple_limit: Largest ripple of the crank speed in %, (largest - smallest) / mean, on a tricycle with two legs
+            and fixed gear.
+        caution: Take so many standard deviations of the gain off it: finds designs that win for sure (not with
+            --moments).
+        riders: Whose power counts: the design's own rider's, or that of a sample of people, each with the seat moved
+            within the limits of `fes_mj fit`: in the mean (population), or what 9 of 10 have (population-p10).
+        samples: People of each sex.
+        sample_seed: Of the sample's random numbers.
+        smooth: With nsga-ii: also the least coefficient of fluctuation.
+        problem: Your own limits, search ranges and design space: an edited copy of optimization.toml.
+        jobs: Processes; each search is a task.
+        cluster: Dask scheduler, tcp://host:port, to send the searches to.
     """
 
     method: Methods = "differential-evolution"

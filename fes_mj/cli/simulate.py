@@ -40,21 +40,14 @@ def simulate(
 ) -> int:
     """Simulate a design in MuJoCo and compare its crank power with statics; exit code 1 if they disagree.
 
-    Parameters
-    ----------
-    out
-        Folder for the result (JSON), the cycle (CSV) and the model (MJCF); it is made if its parent exists.
-    timestep
-        Step of the simulation in s, rounded to a whole number of steps per turn. By default it is chosen beforehand,
-        by how sharply the linkage moves at its cadence.
-    turns
-        Measured turns.
-    render
-        Write a video (.mp4) of the moving legs and linkage beside the crank power.
-    speed
-        Of the video: 1 is the true one. By default a turn takes 4 s.
-    view
-        Then watch it run in MuJoCo's interactive viewer, with two legs, where there is a screen.
+    Args:
+        out: Folder for the result (JSON), the cycle (CSV) and the model (MJCF); it is made if its parent exists.
+        timestep: Step of the simulation in s, rounded to a whole number of steps per turn. By default it is chosen
+            beforehand, by how sharply the linkage moves at its cadence.
+        turns: Measured turns.
+        render: Write a video (.mp4) of the moving legs and linkage beside the crank power.
+        speed: Of the video: 1 is the true one. By default a turn takes 4 s.
+        view: Then watch it run in MuJoCo's interactive viewer, with two legs, where there is a screen.
     """
     loaded, inputs = options.load(design), options.inputs(design)
     require_writable(render, "the video", ".mp4", inputs)

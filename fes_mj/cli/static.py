@@ -18,10 +18,8 @@ _DEFAULTS = RunOptions()
 def static(design: DesignName, /, *others: DesignName, options: RunOptions = _DEFAULTS, curves: Flag = False) -> int:
     """Mean crank power of a design by statics, without masses and without MuJoCo; of several beside each other.
 
-    Parameters
-    ----------
-    curves
-        Also the curves over the turn: a row every 10 deg, with --json 360 points.
+    Args:
+        curves: Also the curves over the turn: a row every 10 deg, with --json 360 points.
     """
     loaded = [options.load(name) for name in (design, *others)]
     results = [LegTurns.solve(*named, options.legs) for named in loaded]

@@ -31,19 +31,13 @@ def stimulation(
 ) -> int:
     """When to stimulate: the crank angles at which each muscle group drives the crank, for a stimulator.
 
-    Parameters
-    ----------
-    cadence
-        Crank speed in rpm, also several times; by default the one at which the tricycle does 5.71 km/h.
-    legs
-        Windows of the right leg alone, or in JSON and CSV of both.
-    lag
-        Of the muscles behind the stimulation, in s; the windows are advanced by what the crank turns in it. Cycles in
-        use: 0.06 to 0.15.
-    csv
-        Write the windows as a table (.csv).
-    plot
-        Draw those of the right leg as rings (.png or .svg).
+    Args:
+        cadence: Crank speed in rpm, also several times; by default the one at which the tricycle does 5.71 km/h.
+        legs: Windows of the right leg alone, or in JSON and CSV of both.
+        lag: Of the muscles behind the stimulation, in s; the windows are advanced by what the crank turns in it. Cycles
+            in use: 0.06 to 0.15.
+        csv: Write the windows as a table (.csv).
+        plot: Draw those of the right leg as rings (.png or .svg).
     """
     loaded, inputs = load_design(design, dims), [Path(design)]
     cadences = [crank_speed(rpm, loaded) for rpm in cadence or (None,)]

@@ -35,22 +35,14 @@ def sweep(
 ) -> int:
     """Evaluate every point of a study; started again with the same folder, it does only what is missing.
 
-    Parameters
-    ----------
-    study
-        Study file (.toml): analysis, grid and sample.
-    out
-        Folder of the results, a Parquet file a chunk; made if it is not there.
-    cadence
-        Crank speed of all points in rpm, for a study that says nothing of it; by default each design's own.
-    jobs
-        Processes (default: one a core).
-    cluster
-        Dask scheduler, tcp://host:port, to send the chunks to.
-    csv
-        Write all rows as one CSV file too.
-    plot
-        Where one or two numbers vary, draw the mean crank power over them: a picture (.png).
+    Args:
+        study: Study file (.toml): analysis, grid and sample.
+        out: Folder of the results, a Parquet file a chunk; made if it is not there.
+        cadence: Crank speed of all points in rpm, for a study that says nothing of it; by default each design's own.
+        jobs: Processes (default: one a core).
+        cluster: Dask scheduler, tcp://host:port, to send the chunks to.
+        csv: Write all rows as one CSV file too.
+        plot: Where one or two numbers vary, draw the mean crank power over them: a picture (.png).
     """
     from fes_mj.sweep.sweep import Sweep
 

@@ -42,20 +42,14 @@ def validate(
 ) -> int:
     """Run every check of the harness on designs, the paper's five if none is named; exit code 1 if one fails.
 
-    Parameters
-    ----------
-    quick
-        Seconds instead of minutes: one rider group, no refinement, two legs on one crank only with --legs 2.
-    faults
-        Also inject faults into the first design named (default d1) and tell which check catches each.
-    report
-        Write a self-contained report (.html).
-    video
-        A video of `fes_mj simulate --render` to put into the report (.mp4).
-    junit
-        Write the verdicts as JUnit XML (.xml), for continuous integration.
-    explain
-        Instead: what this check guards against and what usually breaks it, for example mean_power; `all` lists them.
+    Args:
+        quick: Seconds instead of minutes: one rider group, no refinement, two legs on one crank only with --legs 2.
+        faults: Also inject faults into the first design named (default d1) and tell which check catches each.
+        report: Write a self-contained report (.html).
+        video: A video of `fes_mj simulate --render` to put into the report (.mp4).
+        junit: Write the verdicts as JUnit XML (.xml), for continuous integration.
+        explain: Instead: what this check guards against and what usually breaks it, for example mean_power; `all` lists
+            them.
     """
     if explain is not None:
         return _explain(explain)
