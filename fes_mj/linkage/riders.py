@@ -84,7 +84,7 @@ class Population:
     def of_stature(self, stature: float) -> Rider:
         """The rider of this stature, m, with the proportions and the body mass index of the median."""
         part = stature / self.stature.middle
-        shank = part * self.shank.middle + _number("boot", "malleolus_to_pedal")
+        shank = part * self.shank.middle + boot_height()
         return Rider(part * self.thigh.middle, shank, part**2 * self.mass.middle, self.sex)
 
     def sample(self, size: int, random: "np.random.Generator") -> Legs:
@@ -96,8 +96,7 @@ class Population:
 
     def _legs(self, thigh: Any, shank: Any, mass: Any) -> Legs:
         """The people with these normal scores."""
-        to_pedal = _number("boot", "malleolus_to_pedal")
-        return Legs(self.thigh.at(thigh), self.shank.at(shank) + to_pedal, self.mass.at(mass))
+        return Legs(self.thigh.at(thigh), self.shank.at(shank) + boot_height(), self.mass.at(mass))
 
 
 def preset(name: object) -> Rider | None:
@@ -123,6 +122,11 @@ def populations() -> dict[str, Population]:
 def leg_mass_after_injury() -> tuple[float, float]:
     """Factor on leg masses after a spinal cord injury, and its standard deviation."""
     return _number("sci", "leg_mass_factor"), _number("sci", "leg_mass_factor_sd")
+
+
+def boot_height() -> float:
+    """From the ankle's middle to the level of the pedal axle, m: what a Rider's shank has beyond the measured one."""
+    return _number("boot", "malleolus_to_pedal")
 
 
 @cache

@@ -1,0 +1,67 @@
+"""What muscles pull with along a motion, per activation: forces, joint moments, power."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from fes_mj.common.arrays import FloatArray
+from fes_mj.linkage.joints import PerJoint
+from fes_mj.linkage.kinematics import Motion
+from fes_mj.muscles.anatomy import Anatomy, anatomy
+from fes_mj.muscles.contraction import tension
+from fes_mj.muscles.geometry import Flexion
+from fes_mj.muscles.riders import Riders
+
+
+@dataclass(frozen=True, eq=False)
+class Pull:
+    """Fully activated muscles of every member along the motion of every design.
+
+    Shape (muscles, members, designs, angles): force, N; speed, m/s, at which a muscle grows longer; by_knee, by_hip, m,
+    the change of its length per flexion, which is its moment arm, positive in extension.
+    """
+
+    anatomy: Anatomy
+    force: FloatArray
+    speed: FloatArray
+    arm: PerJoint[FloatArray]
+
+    @cached_property
+    def power(self) -> FloatArray:
+        """Crank power per activation of each group, W, shape (groups, members, designs, angles)."""
+        return -self.of_groups(self.force * self.speed)
+
+    @cached_property
+    def moment(self) -> PerJoint[FloatArray]:
+        """Joint moment per activation of each group, N m, positive in extension, of the shape of `power`."""
+        return self.arm.map(lambda arm: self.of_groups(self.force * arm))
+
+    def of_groups(self, values: FloatArray) -> FloatArray:
+        """Sums over the muscles of each group."""
+        return np.asarray(np.add.reduceat(values, self.anatomy.first_of_group, axis=0))
+
+
+def pull(riders: Riders, motion: Motion, cadence: Any, muscles: Anatomy | None = None) -> Pull:
+    """Of riders along a motion of one design or of a batch; cadence: rad/s, or of each design, shape (designs, 1).
+
+    muscles: those that ship by default.
+    """
+    muscles = muscles or anatomy()
+    column = (slice(None), None, None, None)
+    lengths = muscles.lengths.at(Flexion.along(motion, np.radians(riders["hip_offset_deg"])))
+    rate = motion.joint_rate.map(lambda rate: -cadence * np.atleast_2d(rate))  # of flexion
+    speed = lengths.by_hip * rate.hip + lengths.by_knee * rate.knee
+    scale = muscles.length_scale(motion.design.rider)[:, None]
+    # length, fibre and tendon grow alike with the rider, so that relative lengths and speeds are those of the anatomy
+    relative, _ = tension(
+        lengths.value,
+        speed,
+        muscles.optimal[column],
+        riders.slack(muscles),
+        muscles.pennation[column],
+        riders["max_speed"],
+    )
+    force = riders.strength(muscles) * muscles.force[column] * relative
+    return Pull(muscles, force, scale * speed, PerJoint(scale * lengths.by_knee, scale * lengths.by_hip))

@@ -1,0 +1,87 @@
+"""What is known of a rider's muscles: an ensemble, a member of which is a rider who may have been the one measured."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from fes_mj.common.arrays import FloatArray
+from fes_mj.common.errors import InputError
+from fes_mj.common.reading import DATA
+from fes_mj.common.writing import replacing
+from fes_mj.muscles.anatomy import GROUPS, Anatomy
+from fes_mj.muscles.prior import priors
+
+SHIPPED = DATA / "muscles"
+
+
+@dataclass(frozen=True, eq=False)
+class Riders:
+    """Riders by what is not known of them, each quantity of shape (members,), in the unit of data/muscles/priors.toml.
+
+    likelihood: logarithm of the density of the member and of what was measured, up to a constant, shape (members,).
+    """
+
+    name: str
+    values: Mapping[str, FloatArray]
+    likelihood: FloatArray
+
+    def __len__(self) -> int:
+        return len(self.likelihood)
+
+    def __getitem__(self, quantity: str) -> FloatArray:
+        """Of every member, shape (members, 1, 1), to stand beside designs and crank angles."""
+        return self.values[quantity][:, None, None]
+
+    def taken(self, rows: Any) -> "Riders":
+        """The members at `rows`, an index array, a mask or a slice."""
+        values = {quantity: column[rows] for quantity, column in self.values.items()}
+        return Riders(self.name, values, self.likelihood[rows])
+
+    @property
+    def most_probable(self) -> "Riders":
+        """The one member with the largest density."""
+        return self.taken([int(np.argmax(self.likelihood))])
+
+    @property
+    def fall(self) -> FloatArray:
+        """Time constant of the fall of activation, s, shape (members, 1, 1)."""
+        return self["rise_s"] * self["fall_per_rise"]
+
+    def strength(self, anatomy: Anatomy) -> FloatArray:
+        """Of each muscle per that of the anatomy, shape (muscles, members, 1, 1)."""
+        groups = np.stack([self[f"{group}_strength"] for group in GROUPS])
+        rectus = anatomy.rectus[:, None, None, None]
+        return np.asarray(groups[anatomy.group] * np.where(rectus, self["rectus_recruitment"], 1.0))
+
+    def slack(self, anatomy: Anatomy) -> FloatArray:
+        """Slack length of each tendon, m, shape (muscles, members, 1, 1): longer fibres belong to a shorter tendon."""
+        shift = np.stack([self[f"{group}_fibre_shift"] for group in GROUPS])[anatomy.group]
+        return np.asarray(anatomy.slack[:, None, None, None] - shift * anatomy.optimal[:, None, None, None])
+
+    def windows(self) -> FloatArray:
+        """[on, width] of each group in the measurement, deg of crank from the most bent knee; (groups, members, 2)."""
+        ends = ("on_deg", "width_deg")
+        return np.stack([np.stack([self.values[f"{group}_{end}"] for end in ends], axis=-1) for group in GROUPS])
+
+    def save(self, path: Path) -> None:
+        """Write all members to an .npz file."""
+        with replacing(path) as temporary:
+            np.savez_compressed(temporary, allow_pickle=False, likelihood=self.likelihood, **self.values)
+
+
+def load_riders(source: str | Path) -> Riders:
+    """The shipped ensemble of a rider group ("p1p2", "p1p3"), or one of a file that Riders.save wrote.
+
+    Raises InputError for a file that is none.
+    """
+    shipped = SHIPPED / f"{source}.npz"
+    path = shipped if shipped.is_file() else Path(source)
+    try:
+        with np.load(path, allow_pickle=False) as stored:
+            columns = {name: np.asarray(stored[name], float) for name in ("likelihood", *priors())}
+    except (OSError, ValueError, KeyError, EOFError) as error:
+        raise InputError(f"{path}: no ensemble of riders: {error}") from None
+    return Riders(path.stem, {name: columns[name] for name in priors()}, columns["likelihood"])
