@@ -6,7 +6,7 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from fes_mj.cli.options import Flag, Out
-from fes_mj.common.console import progress_bar, say
+from fes_mj.common.console import say
 from fes_mj.common.errors import require_extra
 from fes_mj.common.writing import make_folder
 
@@ -29,9 +29,7 @@ def reproduce(
     from fes_mj.paper import reproduce as paper
 
     paper.require_ours(out)
-    with progress_bar("reproducing the paper", paper.steps(), quiet) as advance:
-        written = paper.reproduce(out, lambda: advance(1), svg)
-    if not quiet:
-        for path in written:
+    for path in paper.reproduce(out, svg, quiet):
+        if not quiet:
             say(str(path))
     return 0

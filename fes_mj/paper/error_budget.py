@@ -1,6 +1,5 @@
 """The page on the one error budget: what each unknown contributes, and how probable the paper's gains are."""
 
-from collections.abc import Callable
 from itertools import product
 from typing import NamedTuple
 
@@ -10,7 +9,7 @@ from fes_mj.budget.budget import ErrorBudget, Share, Spread, error_budget, share
 from fes_mj.budget.power import UncertainPower
 from fes_mj.budget.unknowns import LAG, SPEED, priors
 from fes_mj.common.arrays import FloatArray
-from fes_mj.linkage.design_file import DESIGNS
+from fes_mj.common.console import track
 from fes_mj.moments.joint_moments import GROUPS
 from fes_mj.moments.uncertainty import with_sd
 from fes_mj.paper.captions import Rows, table
@@ -28,7 +27,6 @@ CASES = {
 FREE, FULL = (next(iter(CASES)), [*CASES][-1])
 GAINS = (1.25, 1.5, 2.0)  # power per the TRT's
 UNKNOWNS = [*priors()]  # the last draws nothing
-STEPS = len(DESIGNS) * len(GROUPS)  # how often `draw_all` calls `done`
 
 
 class Drawn(NamedTuple):
@@ -42,13 +40,9 @@ class Drawn(NamedTuple):
 Budgets = dict[tuple[str, str], Drawn]
 
 
-def draw_all(static: dict[tuple[str, str], QuasiStatic], done: Callable[[], None]) -> Budgets:
+def draw_all(static: dict[tuple[str, str], QuasiStatic], silent: bool) -> Budgets:
     """By design and group, on the same draws of whatever designs share. Raises MissingPartError without SALib."""
-    budgets = {}
-    for key, result in static.items():
-        budgets[key] = _drawn(result)
-        done()
-    return budgets
+    return {key: _drawn(static[key]) for key in track([*static], "error budgets", silent)}
 
 
 def _drawn(result: QuasiStatic) -> Drawn:

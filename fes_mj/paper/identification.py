@@ -15,6 +15,7 @@ import numpy as np
 from scipy.optimize import least_squares, minimize
 
 from fes_mj.common.arrays import FloatArray
+from fes_mj.common.console import track
 from fes_mj.common.errors import AssemblyError
 from fes_mj.linkage.assembly import grashof_margin, joint_ranges
 from fes_mj.linkage.design import Design
@@ -162,16 +163,9 @@ def readings() -> list[Reading]:
     ]
 
 
-STEPS = len(readings())  # how often `read_all` calls `done`
-
-
-def read_all(done: Callable[[], None]) -> dict[str, dict[str, str]]:
+def read_all(silent: bool) -> dict[str, dict[str, str]]:
     """By reading and design: does a point of the rounding box fit Table 1, at which cost, or by how much none does."""
-    outcomes = {}
-    for reading in readings():
-        outcomes[reading.title] = dict(_outcomes(reading))
-        done()
-    return outcomes
+    return {reading.title: dict(_outcomes(reading)) for reading in track(readings(), "readings of Table 2", silent)}
 
 
 @table("readings", design=[name.upper() for name in SIX_BARS])

@@ -6,8 +6,9 @@ import io
 from collections.abc import Callable, Iterable
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING
 
+from fes_mj.common.console import track
 from fes_mj.common.errors import InputError
 from fes_mj.common.markdown import Table
 from fes_mj.common.provenance import provenance
@@ -16,43 +17,33 @@ from fes_mj.common.style import STYLE
 from fes_mj.common.writing import json_text, write_files
 from fes_mj.paper import error_budget, gains, identification, metrics, recovery, riding, tables
 from fes_mj.paper.captions import figure_section, page_title
-from fes_mj.paper.runs import RUNS, Runs, run_all
+from fes_mj.paper.runs import Runs, run_all
 from fes_mj.paper.work_shares import share_table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 DPI = 150  # of the PNG; the SVG is for print
-
 RECORD = "reproduction.json"
-Done: TypeAlias = Callable[[], None]
 
 
-def steps() -> int:
-    """How often reproduce calls `done`."""
-    from fes_mj.paper.figures import FIGURES
+def reproduce(folder: Path, svg: bool = False, silent: bool = False) -> list[Path]:
+    """Write pages, figures and reproduction.json into an existing folder.
 
-    return RUNS + len(FIGURES)
-
-
-def reproduce(folder: Path, done: Done, svg: bool = False) -> list[Path]:
-    """Write pages, figures and reproduction.json into an existing folder; `done` is called steps() times.
-
-    svg: figures as SVG beside the PNG. All files appear or none; the same results are the same bytes.
-    Returns the files written.
+    svg: figures as SVG beside the PNG. silent: no progress is shown. All files appear or none; the same results are the
+    same bytes. Returns the files written.
     """
     from fes_mj.paper.figures import FIGURES
 
-    runs = run_all(done)
+    runs = run_all(silent)
     pages = _pages(runs)
     contents: dict[Path, str | bytes] = {
         folder / f"{name}.md": _page(page_title(name), (table.markdown() for table in tables))
         for name, tables in pages.items()
     }
     contents[folder / "figures.md"] = figures_page()
-    for name, draw in FIGURES.items():
+    for name, draw in track([*FIGURES.items()], "figures", silent):
         contents |= _figure(folder / "figures" / name, partial(draw, runs), svg)
-        done()
     record = {
         "provenance": provenance(inputs(), ["matplotlib"]),
         "hyperparameters": vars(runs.known.hyperparameters),

@@ -7,10 +7,12 @@ Hill's prior, each drawn anew. Nothing here is linear in either.
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
+from itertools import product
 from typing import Any
 
 import numpy as np
 
+from fes_mj.common.console import track
 from fes_mj.common.errors import require_extra
 from fes_mj.common.units import KMH, RPM
 from fes_mj.linkage.design import Design
@@ -32,7 +34,6 @@ RATIOS = np.geomspace(0.25, 4.0, 17)  # times the design's own gear ratio
 SLOPES = (0.0, 0.02)  # on which the best gear ratio is sought
 SEED = 2007
 THREADS = 2  # the compiled solver lets others run beside it
-STEPS = len(DESIGNS) * len(GROUPS)  # how often `ride_all` calls `done`
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,16 +58,12 @@ class Riding:
         return self.design.name.upper(), self.group, self.transmission
 
 
-def ride_all(done: Callable[[], None]) -> list[Riding]:
+def ride_all(silent: bool) -> list[Riding]:
     """All rides. Raises MissingPartError without numba."""
     require_extra("optimize", "numba")
-    rides: list[Riding] = []
-    for group in GROUPS:
-        muscles = _muscles(group)
-        for name in DESIGNS:
-            rides += [_riding(load_design(name), group, muscles, transmission) for transmission in TRANSMISSIONS]
-            done()
-    return rides
+    muscles = {group: _muscles(group) for group in GROUPS}
+    cases = track([*product(GROUPS, DESIGNS, TRANSMISSIONS)], "rides", silent)
+    return [_riding(load_design(name), group, muscles[group], kind) for group, name, kind in cases]
 
 
 def _muscles(group: str) -> list[JointMoments]:

@@ -1,10 +1,12 @@
 """The runs that tables and figures share: every design of the paper under both groups' moments, static and dynamic."""
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from contextlib import suppress
+from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 
+from fes_mj.common.console import track
 from fes_mj.common.errors import AssemblyError
 from fes_mj.crosscheck.turn_case import Case
 from fes_mj.fit.population import PopulationFit, fit_population
@@ -17,13 +19,10 @@ from fes_mj.paper.evidence import load_evidence
 from fes_mj.paper.known import Known, known
 from fes_mj.statics.turn import QuasiStatic, quasi_static
 
-# Simulations, populations, rides ...
-RUNS = (2 * len(GROUPS) + 1) * len(DESIGNS) + riding.STEPS + error_budget.STEPS + identification.STEPS
-
 
 @dataclass(frozen=True)
 class Runs:
-    """By (design, group): statics with identified and with printed dimensions (None where the print cannot turn), with
+    """By (design, group): statics with identified and with printed dimensions (where the print can turn), with
     Hill's torque-velocity relation, and the checked simulations by (design, group, legs). Who can ride, by design,
     and how they ride. What each unknown contributes, by (design, group). What is known of the moments, and
     what other readings of the paper come to.
@@ -31,7 +30,7 @@ class Runs:
 
     known: Known
     static: dict[tuple[str, str], QuasiStatic]
-    printed: dict[tuple[str, str], QuasiStatic | None]
+    printed: dict[tuple[str, str], QuasiStatic]
     hill: dict[tuple[str, str], QuasiStatic]
     dynamic: dict[tuple[str, str, int], Case]
     people: dict[str, PopulationFit]
@@ -40,26 +39,26 @@ class Runs:
     readings: dict[str, dict[str, str]]
 
 
-def run_all(done: Callable[[], None]) -> Runs:
-    """Solve and simulate everything; `done` is called RUNS times."""
-    runs = Runs(known(load_evidence()), {}, {}, {}, {}, {}, riding.ride_all(done), {}, identification.read_all(done))
-    moments = {group: load_moments(group) for group in GROUPS}
-    for name in DESIGNS:
-        for group in GROUPS:
-            key, design = (name, group), load_design(name)
-            runs.static[key] = quasi_static(design, moments[group])
-            runs.hill[key] = quasi_static(design, replace(moments[group], torque_velocity=load_torque_velocity("hill")))
-            try:
-                runs.printed[key] = quasi_static(load_design(name, "printed"), moments[group])
-            except AssemblyError:
-                runs.printed[key] = None
-            for legs in (1, 2):
-                runs.dynamic[name, group, legs] = Case(design, moments[group], legs=legs)
-                done()
-        runs.people[name] = fit_population(load_design(name), moments[GROUPS[0]])
-        done()
-    runs.budgets.update(error_budget.draw_all(runs.static, done))
-    return runs
+def run_all(silent: bool) -> Runs:
+    """Solve and simulate everything, with a bar for each kind of run unless `silent`."""
+    readings, rides = identification.read_all(silent), riding.ride_all(silent)
+    moments, hill = {group: load_moments(group) for group in GROUPS}, load_torque_velocity("hill")
+    static, printed, fast = {}, {}, {}
+    dynamic: dict[tuple[str, str, int], Case] = {}
+    for name, group in product(DESIGNS, GROUPS):
+        key, design = (name, group), load_design(name)
+        static[key] = quasi_static(design, moments[group])
+        fast[key] = quasi_static(design, moments[group].at_speed(hill))
+        with suppress(AssemblyError):
+            printed[key] = quasi_static(load_design(name, "printed"), moments[group])
+        dynamic |= {(*key, legs): Case(design, moments[group], legs=legs) for legs in (1, 2)}
+    for case in track([*dynamic.values()], "simulations", silent):
+        _ = case.checks  # what pages read is computed here, where the bar shows it
+    people = {
+        name: fit_population(load_design(name), moments[GROUPS[0]]) for name in track(DESIGNS, "populations", silent)
+    }
+    budgets = error_budget.draw_all(static, silent)
+    return Runs(known(load_evidence()), static, printed, fast, dynamic, people, rides, budgets, readings)
 
 
 def joint_speed(result: QuasiStatic, joint: str) -> tuple[float, float]:

@@ -24,7 +24,7 @@ def power_table(runs: Runs) -> Rows:
     for (name, group), static in runs.static.items():
         said, deviation = table1()[name].power[group], static.power_sd
         assert deviation is not None
-        printed, dynamic = runs.printed[name, group], runs.dynamic[name, group, 1].simulation
+        printed, dynamic = runs.printed.get((name, group)), runs.dynamic[name, group, 1].simulation
         difference, of_print = dynamic.power_mean - said, f"{printed.power_mean:.2f}" if printed else "cannot turn"
         powers = (said, of_print, static.power_mean, deviation, dynamic.power_mean, difference)
         yield name.upper(), group, *powers, explained_by(difference, deviation)
