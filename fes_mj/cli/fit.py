@@ -26,7 +26,7 @@ from fes_mj.cli.tables import or_dash, print_notes, span, with_error
 from fes_mj.common.console import conclude, print_table, progress_bar, say
 from fes_mj.common.errors import InputError, require_extra
 from fes_mj.common.text import printable
-from fes_mj.common.writing import replacing, require_writable, write_text
+from fes_mj.common.writing import require_writable, write_text
 from fes_mj.fit.population import STEPS, PopulationFit, fit_population
 from fes_mj.fit.seat import SeatFit, SeatLimits, fit_seat, seat_text
 from fes_mj.linkage.design import Design, Rider
@@ -148,21 +148,23 @@ def fit(
             people = fit_population(
                 loaded, joint_moments, limits=limits, samples=samples, seed=seed, done=lambda: advance(1)
             )
-        if plot:
-            _draw(people, plot)
-        options.show(people.summary, lambda: _print_population(people.summary()), picture=plot)
-        return 0
-    require_writable(out, "the design", ".toml", inputs)
-    result = fit_seat(loaded, who.load(loaded), joint_moments, limits)
+        _show_population(people, plot, options)
+    else:
+        require_writable(out, "the design", ".toml", inputs)
+        _show_seat(fit_seat(loaded, who.load(loaded), joint_moments, limits), ratio, out, options)
+    return 0
+
+
+def _show_seat(result: SeatFit, gear_ratio: float, out: Path | None, options: PrintOptions) -> None:
+    """Write the design, if the rider fits, geared as it was given; print the result."""
     written = out if result.fits else None
     if written:
-        write_text(written, design_toml(result.design.with_linkage(gear_ratio=ratio), _origin(result)))
+        write_text(written, design_toml(result.design.with_linkage(gear_ratio=gear_ratio), _origin(result)))
     options.show(
         lambda: result.summary() | {"design_file": written and str(written)},
         lambda: _print(result),
         design_file=written,
     )
-    return 0
 
 
 def _origin(result: SeatFit) -> str:
@@ -195,14 +197,14 @@ def _print(result: SeatFit) -> None:
             say(f"it would with {change}")
 
 
-def _draw(people: PopulationFit, plot: Path) -> None:
-    import matplotlib as mpl
+def _show_population(people: PopulationFit, plot: Path | None, options: PrintOptions) -> None:
+    if plot:
+        from fes_mj.viewing.charts import write_figure
+        from fes_mj.viewing.people import population_figure
 
-    from fes_mj.common.style import STYLE
-    from fes_mj.viewing.people import population_figure
-
-    with mpl.rc_context(STYLE), replacing(plot) as temporary:
-        population_figure([people]).savefig(temporary, dpi=150)
+        write_figure(plot, population_figure, [people])
+    summary = people.summary()
+    options.show(lambda: summary, lambda: _print_population(summary), picture=plot)
 
 
 def _print_population(summary: dict[str, Any]) -> None:

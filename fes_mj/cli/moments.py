@@ -39,9 +39,10 @@ def moments(
     warn_of(measurement.moments)
     if plot:
         require_extra("report", "matplotlib")
-        from fes_mj.viewing.moments_plot import write_plot
+        from fes_mj.viewing.charts import write_figure
+        from fes_mj.viewing.moments_plot import moments_figure
 
-        write_plot(plot, measurement)
+        write_figure(plot, moments_figure, measurement)
     if out:
         write_text(out, moments_csv(measurement.moments))
     options.show(measurement.summary, lambda: _print(measurement), plot=plot, moments=out)

@@ -49,9 +49,10 @@ def stimulation(
         require_extra("report", "matplotlib")
     windows = [window for window in find_windows(loaded, cadences, lag) if window.leg == "right" or legs == 2]
     if plot:
-        from fes_mj.viewing.rings import write_windows
+        from fes_mj.viewing.charts import write_figure
+        from fes_mj.viewing.rings import windows_figure
 
-        write_windows(plot, loaded, windows)
+        write_figure(plot, windows_figure, loaded, windows)
     if csv:
         write_text(csv, table_csv(loaded, windows))
     options.show(lambda: summary(loaded, windows), lambda: _print(loaded, windows), windows=csv, plot=plot)

@@ -97,12 +97,16 @@ def functional(row: Evidence) -> FloatArray:
         return power_weights(kinematics.solve(design, _ANGLES), design.linkage.cadence, PAPER_TRICYCLE)
     if row.quantity == "moment":
         angle = math.radians(row.angle_deg)
-        features = fourier(PAPER_TRICYCLE.source_angle(row.joint, angle, DIRECTIONS[row.direction]))
-        return np.concatenate([features * (joint == row.joint) for joint in JOINTS])
+        return of_joint(row.joint, fourier(PAPER_TRICYCLE.source_angle(row.joint, angle, DIRECTIONS[row.direction])))
     motion = own_leg_motion(row.leg_m)
     features = fourier(_ANGLES - PAPER_TRICYCLE.top_dead_centre)
     parts = [rate @ features / rate.size for rate in motion.joint_rate]
     return PAPER_TRICYCLE.cadence * np.concatenate(parts)
+
+
+def of_joint(joint: str, features: FloatArray) -> FloatArray:
+    """Weights, shape (..., 98), of functionals that see one joint's curve alone, by these of its terms, (..., 49)."""
+    return np.concatenate([features * (joint == name) for name in JOINTS], axis=-1)
 
 
 def own_leg_motion(leg: float) -> kinematics.Motion:

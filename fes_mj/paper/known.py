@@ -81,9 +81,9 @@ class Known:
         for name in SIX_BARS:
             drawn = inside_rounding(name, dict.fromkeys(LENGTHS, LENGTH_ROUNDING), random, _LINKAGES)
             printed, rows = load_design(name, "printed"), zip(*drawn.values(), strict=True)
-            weights = np.array([_weights(replaced(printed, dict(zip(drawn, row, strict=True)))) for row in rows])
+            weights = np.array([weights_of(replaced(printed, dict(zip(drawn, row, strict=True)))) for row in rows])
             for group, posterior in self.text.posteriors.items():
-                changes[name, group] = (weights - _weights(load_design(name))) @ posterior.mean
+                changes[name, group] = (weights - weights_of(load_design(name))) @ posterior.mean
         return changes
 
 
@@ -97,7 +97,8 @@ def known(evidence: list[Evidence]) -> Known:
     return Known(evidence, hyperparameters, Recovered(posteriors, before), with_text, predictions)
 
 
-def _weights(design: Design) -> FloatArray:
+def weights_of(design: Design) -> FloatArray:
+    """Mean power per coefficient, W/(N m), shape (98,)."""
     return power_weights(solve(design), design.linkage.cadence, PAPER_TRICYCLE)
 
 

@@ -8,11 +8,11 @@ import numpy as np
 from fes_mj.common.arrays import FloatArray
 from fes_mj.common.markdown import Table
 from fes_mj.linkage.assembly import transmission_angles
-from fes_mj.linkage.joints import JOINTS
 from fes_mj.moments.fourier import fourier
 from fes_mj.moments.joint_moments import GROUPS
 from fes_mj.moments.uncertainty import instant_power_weights, with_sd
 from fes_mj.paper.captions import Rows, captioned, table
+from fes_mj.paper.evidence import of_joint
 from fes_mj.paper.runs import Runs
 from fes_mj.statics.characteristics import extent, inactive_share
 from fes_mj.statics.turn import QuasiStatic
@@ -96,7 +96,7 @@ def jump_weights(result: QuasiStatic) -> list[FloatArray]:
     for joint, angle in result.joint_angle.items():
         for end in (angle.min(), angle.max()):
             jump = fourier(source(joint, end, 1.0)) - fourier(source(joint, end, -1.0))
-            weights.append(np.concatenate([jump * (joint == other) for other in JOINTS]))
+            weights.append(of_joint(joint, jump))
     return weights
 
 

@@ -14,11 +14,10 @@ from scipy.special import ive
 
 from fes_mj.common.arrays import BoolArray, FloatArray
 from fes_mj.common.errors import InputError
-from fes_mj.linkage.joints import JOINTS
 from fes_mj.moments.fourier import HARMONICS, TERMS, fourier
 from fes_mj.moments.joint_moments import GROUPS
 from fes_mj.moments.uncertainty import standard_deviation
-from fes_mj.paper.evidence import Evidence, functional, of_group
+from fes_mj.paper.evidence import Evidence, functional, of_group, of_joint
 
 # What the Fourier series carries (fes_mj.moments.fourier), and half a turn: the likelihood's one maximum lies between.
 SHORTEST_LENGTH, LONGEST_LENGTH = 0.5, 2.0
@@ -81,8 +80,7 @@ class Posterior:
 
     def curve(self, joint: str, crank_angle: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Mean and standard deviation of a joint's moment, N m, at crank angles from top dead centre, rad."""
-        features = fourier(crank_angle)
-        return self.predict_all(np.concatenate([features * (joint == name) for name in JOINTS], axis=1))
+        return self.predict_all(of_joint(joint, fourier(crank_angle)))
 
 
 class System(NamedTuple):

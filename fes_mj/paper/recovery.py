@@ -10,14 +10,13 @@ from typing import Any
 import numpy as np
 
 from fes_mj.linkage.design_file import load_design
-from fes_mj.linkage.kinematics import solve
 from fes_mj.moments.fourier import fourier
 from fes_mj.moments.joint_moments import GROUPS
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
-from fes_mj.moments.uncertainty import power_weights, with_sd
+from fes_mj.moments.uncertainty import with_sd
 from fes_mj.paper.captions import Rows, table
-from fes_mj.paper.evidence import Evidence, functional, of_group
-from fes_mj.paper.known import Known, rms, scores
+from fes_mj.paper.evidence import Evidence, functional, of_group, of_joint
+from fes_mj.paper.known import Known, rms, scores, weights_of
 from fes_mj.paper.reconstruction import Hyperparameters, Posterior, System, condition, most_likely
 from fes_mj.paper.statements import allowed_share, load_statements
 
@@ -50,8 +49,7 @@ def statement_table(known: Known) -> Rows:
 def knee_table(known: Known) -> Rows:
     """Section 7.2's two knee moments, which are evidence of one group, in both."""
     for name, direction, said in (("extending", 1.0, 20.0), ("flexing", -1.0, -1.0)):
-        moment = fourier(PAPER_TRICYCLE.source_angle("knee", np.radians(73.0), direction))
-        weights = np.concatenate([moment, 0 * moment])
+        weights = of_joint("knee", fourier(PAPER_TRICYCLE.source_angle("knee", np.radians(73.0), direction)))
         for group in GROUPS:
             cells = (with_sd(*recovered.posteriors[group].predict(weights), 1) for recovered in known.by_basis.values())
             yield name, group, said, *cells, "used" if group == "p1p2" else "not used"
@@ -122,7 +120,6 @@ def _case(title: str, data: dict[str, list[Evidence]], priors: dict[str, Hyperpa
 
 def _gain(posterior: Posterior) -> str:
     """D1's power per the TRT's with its standard deviation, to first order."""
-    designs = (load_design(name) for name in ("d1", "trt"))
-    d1, trt = (power_weights(solve(design), design.linkage.cadence, PAPER_TRICYCLE) for design in designs)
+    d1, trt = (weights_of(load_design(name)) for name in ("d1", "trt"))
     ratio = d1 @ posterior.mean / (trt @ posterior.mean)
     return f"{ratio:.2f} +- {posterior.predict(d1 - ratio * trt)[1] / (trt @ posterior.mean):.2f}"

@@ -2,16 +2,19 @@
 
 import io
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
+import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fes_mj.common.arrays import FloatArray
 from fes_mj.common.style import COLOURS, CRANK_LABEL, INK, LINKS, STYLE, X_LABEL, literal
+from fes_mj.common.writing import replacing
 from fes_mj.crosscheck.turn_case import Case
 from fes_mj.linkage.design import BODIES, Design
 from fes_mj.linkage.kinematics import FULL_TURN, positions, solve
@@ -29,6 +32,12 @@ def any_letters() -> Iterator[None]:
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", "Glyph .* missing from")
         yield
+
+
+def write_figure(path: Path, draw: Callable[..., Figure], *content: Any) -> None:
+    """Write what `draw` makes of the content, in the one look, as the suffix of `path` says."""
+    with mpl.rc_context(STYLE), any_letters(), replacing(path) as temporary:
+        draw(*content).savefig(temporary, dpi=150)
 
 
 def svg_text(figure: Figure) -> str:

@@ -1,37 +1,29 @@
 """Joint moments as they were understood: over crank angle, and over joint angle by direction."""
 
-from pathlib import Path
-
-import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from fes_mj.common.style import COLOURS, FAINT, STYLE, literal
-from fes_mj.common.writing import replacing
+from fes_mj.common.style import COLOURS, FAINT, literal
 from fes_mj.linkage.joints import JOINTS
 from fes_mj.moments.files import Measurement
 from fes_mj.moments.fourier import WIDEST_GAP, fourier, gaps
 from fes_mj.moments.torque_map import torque_map
-from fes_mj.viewing.charts import any_letters
 
 _SAMPLES = 2000  # of a turn that are drawn at most
 
 
-def write_plot(path: Path, measurement: Measurement) -> None:
-    """Write the picture as the suffix of `path` says."""
-    moments = measurement.moments
-    with mpl.rc_context(STYLE), any_letters(), replacing(path) as temporary:
-        figure = Figure(figsize=(10.0, 4.2), layout="constrained")
-        over_crank, knee, hip = figure.subplots(1, 3, width_ratios=[1.6, 1, 1])
-        _over_crank(over_crank, measurement)
-        for axes, joint in ((knee, "knee"), (hip, "hip")):
-            _over_joint(axes, measurement, joint)
-        figure.suptitle(
-            literal(f"{moments.name}: joint moments of one leg, extension positive"), weight="bold", x=0.01, ha="left"
-        )
-        figure.legend(*over_crank.get_legend_handles_labels(), loc="outside lower left", ncols=4)
-        figure.savefig(temporary, dpi=150)
+def moments_figure(measurement: Measurement) -> Figure:
+    """Three plots beside each other: both moments over crank angle, either joint's over its own angle."""
+    figure = Figure(figsize=(10.0, 4.2), layout="constrained")
+    over_crank, knee, hip = figure.subplots(1, 3, width_ratios=[1.6, 1, 1])
+    _over_crank(over_crank, measurement)
+    for axes, joint in ((knee, "knee"), (hip, "hip")):
+        _over_joint(axes, measurement, joint)
+    title = literal(f"{measurement.moments.name}: joint moments of one leg, extension positive")
+    figure.suptitle(title, weight="bold", x=0.01, ha="left")
+    figure.legend(*over_crank.get_legend_handles_labels(), loc="outside lower left", ncols=4)
+    return figure
 
 
 def _over_crank(axes: Axes, measurement: Measurement) -> None:
@@ -43,16 +35,14 @@ def _over_crank(axes: Axes, measurement: Measurement) -> None:
                 for whole in (0, 360):  # the gap can go round the end of the axis
                     axes.axvspan(start - whole, start + width - whole, color=FAINT, alpha=0.12, lw=0)
     curves, terms = moments.at(angle), fourier(angle)
-    for number, joint in enumerate(JOINTS):
+    for joint in JOINTS:
         for turn in measurement.turns:
             step = max(1, len(turn.knee) // _SAMPLES)
             at = np.degrees(turn.crank_angle[::step]) % 360
             axes.plot(at, getattr(turn, joint)[::step], ".", color=COLOURS[joint], ms=4, alpha=0.5)
         axes.plot(np.degrees(angle), curves[joint], color=COLOURS[joint], label=joint)
         if moments.covariance is not None:
-            size = terms.shape[-1]
-            part = moments.covariance[number * size :, number * size :][:size, :size]
-            deviation = np.sqrt(np.einsum("ij,jk,ik->i", terms, part, terms).clip(0))
+            deviation = np.linalg.norm(terms @ moments.deviations[joint], axis=-1)
             ends = curves[joint] - deviation, curves[joint] + deviation
             axes.fill_between(np.degrees(angle), *ends, color=COLOURS[joint], alpha=0.2, lw=0, label="one sd")
     horizontal = float(np.degrees(-moments.measured_on.top_dead_centre) % 360)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
 import matplotlib as mpl
@@ -14,42 +13,38 @@ from matplotlib.patches import Patch
 
 from fes_mj.common.style import BAD, FAINT, GOOD, INK, SERIES, STYLE, literal
 from fes_mj.common.units import KMH, RPM
-from fes_mj.common.writing import replacing
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.turning import turning
 from fes_mj.riding.starts import Starts
 from fes_mj.riding.stimulation import CORE, MUSCLES, Window
-from fes_mj.viewing.charts import any_letters, svg_text
+from fes_mj.viewing.charts import svg_text
 
 _RING, _WIDTH = 0.28, 0.11  # distance of two rings; of the band of a window, beside that of its stimulation
 _INNER = 0.30
 
 
-def write_windows(path: Path, design: Design, windows: Sequence[Window]) -> None:
-    """Write the right leg's stimulation windows, a ring a muscle and a panel a cadence, as the suffix of `path` says.
+def windows_figure(design: Design, windows: Sequence[Window]) -> Figure:
+    """The right leg's stimulation windows, a ring a muscle and a panel a cadence.
 
     Where each muscle group drives the crank, its core, and when to stimulate for that.
     """
     cadences = list(dict.fromkeys(window.cadence for window in windows))
-    with mpl.rc_context(STYLE), any_letters(), replacing(path) as temporary:
-        figure = Figure(figsize=(4.4 * len(cadences), 5.4))
-        for number, cadence in enumerate(cadences):
-            axes = _clockwise(figure.add_subplot(1, len(cadences), number + 1, projection="polar"))
-            _rings(axes, design, [window for window in windows if window.cadence == cadence and window.leg == "right"])
-        title = f"{design.name}: when to stimulate, lag {windows[0].lag:g} s"
-        figure.suptitle(literal(title), weight="bold", y=0.98)
-        labels = [
-            *(
-                Patch(color=colour, label=f"{name} ({muscle.moment})")
-                for (name, muscle), colour in zip(MUSCLES.items(), SERIES, strict=True)
-            ),
-            Patch(color=FAINT, alpha=0.25, label="drives the crank"),
-            Patch(color=FAINT, alpha=0.55, label=f"core: at least {CORE:g} of its best"),
-            Patch(color=FAINT, label="stimulate, for the core"),
-        ]
-        figure.legend(handles=labels, loc="lower center", ncols=2 if len(cadences) == 1 else 3)
-        figure.subplots_adjust(bottom=0.2, top=0.86, wspace=0.35)
-        figure.savefig(temporary, dpi=150)
+    figure = Figure(figsize=(4.4 * len(cadences), 5.4))
+    for number, cadence in enumerate(cadences):
+        axes = _clockwise(figure.add_subplot(1, len(cadences), number + 1, projection="polar"))
+        _rings(axes, design, [window for window in windows if window.cadence == cadence and window.leg == "right"])
+    title = f"{design.name}: when to stimulate, lag {windows[0].lag:g} s"
+    figure.suptitle(literal(title), weight="bold", y=0.98)
+    muscles = zip(MUSCLES.items(), SERIES, strict=True)
+    labels = [
+        *(Patch(color=colour, label=f"{name} ({muscle.moment})") for (name, muscle), colour in muscles),
+        Patch(color=FAINT, alpha=0.25, label="drives the crank"),
+        Patch(color=FAINT, alpha=0.55, label=f"core: at least {CORE:g} of its best"),
+        Patch(color=FAINT, label="stimulate, for the core"),
+    ]
+    figure.legend(handles=labels, loc="lower center", ncols=2 if len(cadences) == 1 else 3)
+    figure.subplots_adjust(bottom=0.2, top=0.86, wspace=0.35)
+    return figure
 
 
 def _rings(axes: Any, design: Design, windows: Sequence[Window]) -> None:
