@@ -97,17 +97,14 @@ def _dimensions(design: Design, count: int) -> dict[str, FloatArray]:
         return {name: _spread(values, count) for name, values in known.items()}
     random = np.random.default_rng(_seed(design.name))
     sizes = {name: component(design, name) for name in LENGTHS if component(design, name)}
-    half_digit = 0.5 * 10.0 ** -max(_decimals(size) for size in sizes.values())
+    written = [np.format_float_positional(size, trim="-") for size in sizes.values()]
+    half_digit = 0.5 * 10.0 ** -max(len(number.partition(".")[2]) for number in written)
     return {name: size + random.uniform(-half_digit, half_digit, count) for name, size in sizes.items()}
 
 
 def _spread(sample: Any, count: int) -> FloatArray:
     """So many of a sample whose members are independent, evenly from the first to the last."""
     return np.asarray(sample[np.linspace(0, len(sample) - 1, count).astype(int)])
-
-
-def _decimals(number: float) -> int:
-    return len(np.format_float_positional(number, trim="-").partition(".")[2])
 
 
 def _seed(name: str) -> int:

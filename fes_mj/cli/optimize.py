@@ -145,7 +145,7 @@ def _print(winner: Winner, optimum: Optimum) -> None:
         rows = [tuple(f"{value:.3f}" for value in rider.values()) for rider in optimum.riders]
         print_table(f"{people.statistic}: {optimum.power:.2f} W; by these riders", _RIDER_COLUMNS, rows)
     if front:
-        print_table(f"Front, {front.title}", front.columns, front.rows)
+        print_table(f"Front, {front.table.title}", [*front.table.columns], front.table.cells)
     for note in winner.notes:
         say(f"note: {note}")
     say("note: the design space is an assumption, see --problem")

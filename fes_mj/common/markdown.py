@@ -14,7 +14,7 @@ class Table(NamedTuple):
 
     def markdown(self) -> str:
         """The table in Markdown, columns aligned; None is shown as a dash."""
-        cells = [tuple(self.columns), *(self._cells(row) for row in self.rows)]
+        cells = [tuple(self.columns), *self.cells]
         widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
         text = [not spec for spec in self.columns.values()]
         rule = [("-" * width if left else "-" * (width - 1) + ":") for width, left in zip(widths, text, strict=True)]
@@ -30,11 +30,15 @@ class Table(NamedTuple):
         """A dictionary a row, numbers as they are."""
         return [dict(zip(self.columns, row, strict=True)) for row in self.rows]
 
-    def _cells(self, row: tuple[Any, ...]) -> tuple[str, ...]:
-        return tuple(
-            "-" if value is None else value if isinstance(value, str) else format(value, spec)
-            for value, spec in zip(row, self.columns.values(), strict=True)
-        )
+    @property
+    def cells(self) -> list[tuple[str, ...]]:
+        """The rows as text."""
+        formats = self.columns.values()
+        return [tuple(map(_text, row, formats)) for row in self.rows]
+
+
+def _text(value: Any, spec: str) -> str:
+    return "-" if value is None else value if isinstance(value, str) else format(value, spec)
 
 
 def _line(cells: Sequence[str], widths: list[int], text: list[bool]) -> str:

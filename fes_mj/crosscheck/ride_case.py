@@ -74,8 +74,9 @@ class RideCase(Brief):
         """The comparison."""
         run, mine, other = self.simulation, self.simulation.trace, self.reference
         least = LEAST_POWER * self.ride.duration
+        turns_apart = 0.0 if mine.rides and other.rides else abs(mine.turns - other.turns)  # where they stop
         return (
-            self.check("ride_verdict", stops_apart(mine, other)),
+            self.check("ride_verdict", turns_apart if mine.rides == other.rides else math.inf),
             self.check("ride_speed", speed_difference(mine, other)),
             self.check("ride_settled", relative(mine.mean_speed, other.mean_speed)),
             self.check("ride_power", self._power_difference()),
@@ -134,13 +135,6 @@ def relative(one: float | None, other: float | None) -> float:
     if one is None or other is None:
         return 0.0 if one is other else math.inf
     return abs(one / other - 1)
-
-
-def stops_apart(one: Trace, other: Trace) -> float:
-    """Turns of the crank between the two stops; 0 if both ride, infinite if only one does."""
-    if one.rides != other.rides:
-        return math.inf
-    return 0.0 if one.rides else abs(one.turns - other.turns)
 
 
 def speed_difference(one: Trace, other: Trace) -> float:

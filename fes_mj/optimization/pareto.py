@@ -5,8 +5,9 @@ from typing import Any
 
 import numpy as np
 
-from fes_mj.common.arrays import FloatArray, IntArray
+from fes_mj.common.arrays import FloatArray
 from fes_mj.common.errors import InputError, require_extra
+from fes_mj.common.markdown import Table
 from fes_mj.common.writing import csv_text
 from fes_mj.linkage.variables import LENGTHS
 from fes_mj.moments.joint_moments import GROUPS, JointMoments
@@ -48,30 +49,18 @@ class Front:
         return csv_text(powers | dict(zip(VARIED, self.x.T, strict=True)) | self._smooth)
 
     @property
-    def columns(self) -> tuple[str, ...]:
-        """Of `rows`."""
-        return ("design", *(f"{group}, W" for group in GROUPS), *(FLUCTUATION for _ in self._smooth))
-
-    @property
-    def rows(self) -> list[tuple[str, ...]]:
-        """Some designs all along the front: number, powers and, if it was an objective, fluctuation, as text."""
-        smooth = [[f"{value:.3f}" for value in column] for column in self._smooth.values()]
-        powers = [[f"{power:.2f}" for power in column] for column in self.power.T]
-        return [(f"{row}", *(column[row] for column in (*powers, *smooth))) for row in self._shown]
-
-    @property
-    def title(self) -> str:
-        """How many of the designs stand in `rows`."""
-        return f"{len(self._shown)} of {len(self.x)} designs"
+    def table(self) -> Table:
+        """Designs all along the front: number, powers and, if it was an objective, fluctuation."""
+        shown = np.unique(np.linspace(0, len(self.x) - 1, _ROWS).astype(int))
+        columns = {"design": ""} | {f"{group}, W": ".2f" for group in GROUPS}
+        columns |= dict.fromkeys([FLUCTUATION] * len(self._smooth), ".3f")
+        measured = np.column_stack([self.power, *self._smooth.values()])
+        return Table(f"{len(shown)} of {len(self.x)} designs", columns, [(f"{row}", *measured[row]) for row in shown])
 
     @property
     def _smooth(self) -> dict[str, FloatArray]:
         """The column of the fluctuation, if it was an objective."""
         return {} if self.fluctuation is None else {"fluctuation": self.fluctuation}
-
-    @property
-    def _shown(self) -> IntArray:
-        return np.unique(np.linspace(0, len(self.x) - 1, _ROWS).astype(int))
 
 
 def pareto_front(

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -44,14 +45,18 @@ class Evaluation:
 
     x: shape (n, variables), gear ratios filled in. power: mean crank power of one leg, W, shape (n, sets of moments);
     of several riders their statistic. values: of each constraint, shape (n, constraints), NaN where a design was
-    refused before it was computed; of several riders the worst. margins: the same against their limits.
+    refused before it was computed; of several riders the worst.
     """
 
     x: FloatArray
     power: FloatArray
     values: FloatArray
-    margins: FloatArray
-    scales: FloatArray
+    constraints: tuple[Constraint, ...]
+
+    @cached_property
+    def margins(self) -> FloatArray:
+        """How far inside their limits the values are."""
+        return margins(self.constraints, self.values)
 
     @property
     def feasible(self) -> BoolArray:
@@ -60,7 +65,8 @@ class Evaluation:
     @property
     def scaled_margins(self) -> FloatArray:
         """Margins in their scales, shape (n, constraints), none of them NaN."""
-        return np.nan_to_num(self.margins / self.scales, nan=-_UNKNOWN)
+        scales = [constraint.scale for constraint in self.constraints]
+        return np.asarray(np.nan_to_num(self.margins / scales, nan=-_UNKNOWN))
 
     @property
     def violation(self) -> FloatArray:
@@ -178,10 +184,7 @@ class Problem:
             power[sound] = self.people.power(turn.work * (turns_per_second(cadence) * ratios[:, None]))
             by_rider = motion_values(turn, self.table.measured_on, speeds, ratios)
             motion[sound] = self._worst(np.column_stack([by_rider, *self._ripple(ridden, by_rider, ratios)]))
-        values = np.hstack([lengths, motion])
-        scales = np.array([constraint.scale for constraint in self.constraints])
-        filled = np.column_stack([free, gear_ratio])
-        return Evaluation(filled, power, values, margins(self.constraints, values), scales)
+        return Evaluation(np.column_stack([free, gear_ratio]), power, np.hstack([lengths, motion]), self.constraints)
 
     def merit(self, evaluation: Evaluation) -> FloatArray:
         """What is maximised, W, shape (n,); every infeasible design ranks below, by its violation.

@@ -1,6 +1,6 @@
 """What a found design is worth: simulated, compared with the design it had to beat, sampled for tolerance."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -57,17 +57,17 @@ class Tolerance(NamedTuple):
 def to_manufacturing(design: Design, table: WorkTable, random: np.random.Generator) -> Tolerance:
     """All lengths of the linkage off by up to MANUFACTURING, uniformly and independently."""
     drawn = lengths(design)
-    # R7, R8, R9 and R10 do not exist in a TRT, and are zero in it
-    real = drawn != 0 if design.linkage.kind == "trt" else np.ones(len(drawn), bool)
-    shift = random.uniform(-MANUFACTURING, MANUFACTURING, (SAMPLES, len(drawn))) * real
+    shift = random.uniform(-MANUFACTURING, MANUFACTURING, (SAMPLES, len(drawn)))
+    if design.linkage.kind == "trt":
+        shift *= drawn != 0  # R7, R8, R9 and R10 do not exist, and are zero in it
     return _tolerance(with_lengths(design, (drawn + shift).T[..., None]), table)
 
 
 def to_rider(design: Design, table: WorkTable, random: np.random.Generator) -> Tolerance:
     """Thigh and shank longer or shorter by up to LEG, uniformly and independently."""
     shift = random.uniform(-LEG, LEG, (2, SAMPLES, 1))
-    rider = replace(design.rider, thigh=design.rider.thigh + shift[0], shank=design.rider.shank + shift[1])
-    return _tolerance(replace(design, rider=rider), table)
+    legs = {"thigh": design.rider.thigh + shift[0], "shank": design.rider.shank + shift[1]}
+    return _tolerance(design.with_rider(**legs), table)
 
 
 def _tolerance(designs: Design, table: WorkTable) -> Tolerance:
@@ -175,22 +175,17 @@ class Winner:
 
 
 def assess(design: Design, compared_with: Design, moments: JointMoments, seed: int = 0) -> Winner:
-    """Simulate a design against statics, compare it with another one, sample its tolerances."""
+    """Simulate a design against statics, compare it with another at that one's cadence, sample tolerances."""
     table, random = WorkTable.of(moments), np.random.default_rng(seed)
+    own, other = quasi_static(design, moments), quasi_static(compared_with, moments)
+    deviation = difference_sd(own, other)
     return Winner(
         case=Case(design, moments),
         compared_with=compared_with,
         joint_speed=joint_speeds(design, table),
         reversals=cycles(design, table).joints.map(lambda joint: int(joint.reversals[0])),
         ripple=steady_ripple(Ride(design, moments, transmission="fixed")),
-        gain=gain_over(design, compared_with, moments),
+        gain=None if deviation is None else Gain(own.power_mean - other.power_mean, deviation),
         manufacturing=to_manufacturing(design, table, random),
         rider=to_rider(design, table, random),
     )
-
-
-def gain_over(design: Design, compared_with: Design, moments: JointMoments) -> Gain | None:
-    """Power gained over another design, each at its own cadence; None for moments whose error is not known."""
-    own, other = quasi_static(design, moments), quasi_static(compared_with, moments)
-    deviation = difference_sd(own, other)
-    return None if deviation is None else Gain(own.power_mean - other.power_mean, deviation)

@@ -78,13 +78,9 @@ def share_table(budgets: Budgets) -> Rows:
     """Sobol's shares of the variance, of first and total order."""
     for (name, group), drawn in budgets.items():
         for case, blame in drawn.shares.items():
-            cells = (_percent(blame[unknown]) if unknown in blame else None for unknown in UNKNOWNS[:-1])
+            cells = {name: f"{max(0.0, 100 * of.first):.0f} / {100 * of.total:.0f}" for name, of in blame.items()}
             largest = max(share.total_error for share in blame.values())
-            yield name.upper(), group, case, *cells, 100 * largest
-
-
-def _percent(share: Share) -> str:
-    return f"{max(0.0, 100 * share.first):.0f} / {100 * share.total:.0f}"
+            yield name.upper(), group, case, *map(cells.get, UNKNOWNS[:-1]), 100 * largest
 
 
 def ratios(budgets: Budgets, name: str, group: str, case: str, base: str = "trt") -> FloatArray:

@@ -78,7 +78,9 @@ def _riding(design: Design, group: str, muscles: list[JointMoments], transmissio
     balanced = balancing_slope(level[0])
     uphill = [replace(ride, road=Road(slope=balanced)) for ride in level]
     brief = [replace(ride, duration=SHORT) for ride in level[: 1 + START_DRAWS]]
-    geared = {slope: [_geared(level[0], ratio, slope) for ratio in RATIOS] for slope in SLOPES}
+    ratios = RATIOS * design.linkage.gear_ratio
+    geared = [replace(level[0], design=design.with_linkage(gear_ratio=float(ratio))) for ratio in ratios]
+    on_slopes = {slope: [replace(ride, road=Road(slope=slope)) for ride in geared] for slope in SLOPES}
     with ThreadPoolExecutor(THREADS) as threads:
         return Riding(
             design,
@@ -90,14 +92,9 @@ def _riding(design: Design, group: str, muscles: list[JointMoments], transmissio
             [*threads.map(lambda ride: starts(ride, ANGLES), brief)],
             {
                 slope: [trace.mean_speed or 0.0 for trace in threads.map(solved, rides)]
-                for slope, rides in geared.items()
+                for slope, rides in on_slopes.items()
             },
         )
-
-
-def _geared(ride: Ride, ratio: float, slope: float) -> Ride:
-    geared = ride.design.with_linkage(gear_ratio=ratio * ride.design.linkage.gear_ratio)
-    return replace(ride, design=geared, road=Road(slope=slope))
 
 
 @table("riding", draws=str(DRAWS))

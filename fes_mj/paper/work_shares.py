@@ -68,11 +68,11 @@ def share_table(known: Known) -> Rows:
         group, muscles = said["group"], said["muscles"]
         counted = [shares(recovered.curves[group], said["leg_m"], muscles) for recovered in known.by_basis.values()]
         values = (basis for reading in zip(*counted, strict=True) for basis in reading)
-        cells = (with_sd(float(np.median(share)), _half_width(share), 0) for share in values)
-        yield group, muscles, float(said["value"]), *cells
-
-
-def _half_width(values: FloatArray) -> float:
-    """Half of what two thirds of the values span: a ratio can be anything where its denominator nears 0."""
-    low, high = np.quantile(values, (1 / 6, 5 / 6))
-    return float(high - low) / 2
+        # a ratio can be anything where its denominator nears 0, so no sd, but half of what two thirds of them span
+        spans = (np.quantile(share, (1 / 6, 1 / 2, 5 / 6)) for share in values)
+        yield (
+            group,
+            muscles,
+            float(said["value"]),
+            *(with_sd(middle, (high - low) / 2, 0) for low, middle, high in spans),
+        )

@@ -19,15 +19,13 @@ from fes_mj.crosscheck.pipeline import Pipeline
 from fes_mj.crosscheck.ride_case import RideCase
 from fes_mj.linkage import kinematics
 from fes_mj.linkage.design import BODIES, Design
-from fes_mj.linkage.inertia import BodyLoad
 from fes_mj.linkage.joints import PerJoint
 from fes_mj.linkage.kinematics import Jet, Motion, Rotation
 from fes_mj.linkage.legs import TWO_LEGS
 from fes_mj.linkage.variables import ALL
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.moments.torque_map import GRID, TorqueMap
-from fes_mj.riding.ride import Ride
-from fes_mj.riding.trace import ride as ride_by_equation
+from fes_mj.riding.trace import Trace, ride as ride_by_equation
 from fes_mj.simulation.bench import PLAIN, BenchOptions
 from fes_mj.simulation.mjcf import SERVO, SERVO_GAIN
 from fes_mj.simulation.road import RoadRun
@@ -53,10 +51,6 @@ def with_loads_at_joints(steps: Pipeline, motion: Motion, moments: Any, loads: A
     return Pipeline.equilibrium(steps, motion, moments, moved)
 
 
-def shank_turned(moment: PerJoint[FloatArray]) -> dict[str, FloatArray]:
-    return joint_couples(moment) | {"shank": moment.knee}
-
-
 def without_length(motion: Motion, body: str, point: str) -> Any:
     arm = moment_arm(motion, body, point)
     return arm.real / abs(arm) + 1j * arm.imag if (body, point) == ("thigh", "knee") else arm
@@ -77,10 +71,6 @@ class ShankAlone(Motion):
     def joint_rotation(self) -> PerJoint[Rotation]:
         shank = self.rotation["shank"]
         return PerJoint(Rotation(-shank.first, -shank.second), self.rotation["thigh"])
-
-
-def knee_from_shank_alone(motion: Motion) -> Motion:
-    return ShankAlone(motion.design, motion.crank_angle, motion.points, motion.rotation)
 
 
 def without_centripetal(motion: Motion) -> Motion:
@@ -160,14 +150,6 @@ def in_keyframe(field: str, joint: str, change: Callable[[float], float]) -> Ste
     return {"edit_model": edit}
 
 
-def half_a_turn_more(steps: Pipeline, *arguments: Any, **options: Any) -> Any:
-    return replace(Pipeline.run(steps, *arguments, **options | {"turns": 1.5}), turns=1)
-
-
-def without_pre_roll(steps: Pipeline, options: BenchOptions = PLAIN, **own: Any) -> Any:
-    return Pipeline.run(steps, replace(options, pre_roll=1), **own)
-
-
 def coarser(steps: Pipeline, options: BenchOptions = PLAIN, *, timestep: float | None = None, **own: Any) -> Any:
     count = steps_per_turn(steps.design, steps.cadence, timestep or steps.timestep)
     return Pipeline.run(steps, options, timestep=16 * 2 * math.pi / steps.cadence / count, **own)
@@ -178,28 +160,14 @@ def with_whole_couples(steps: Pipeline, motion: Motion, *arguments: Any, **optio
     return {body: load._replace(couple=whole[body].couple) for body, load in loads.items()}
 
 
-def without_couples(loads: dict[str, BodyLoad]) -> dict[str, BodyLoad]:
-    return {body: load._replace(couple=0 * load.couple) for body, load in loads.items()}
-
-
-def in_equation(change: Callable[[Ride], Ride]) -> Steps:
-    """The reduced equation of motion is that of a changed ride."""
-    return {"reference": cached_property(lambda case: ride_by_equation(change(case.ride)))}
-
-
-class OneLegCounted(RoadRun):
-    legs = TWO_LEGS[:1]
+def slope_reversed(case: RideCase) -> Trace:
+    return ride_by_equation(replace(case.ride, road=replace(case.ride.road, slope=-case.ride.road.slope)))
 
 
 class RollingUnsigned(RoadRun):
     def resistance(self, speed: FloatArray) -> FloatArray:
         load = self.ride.load
         return np.asarray(load.rolling + load.climb + load.drag * speed * np.abs(speed))
-
-
-def other_way(limits: FloatArray) -> FloatArray:
-    """A range that ends where it began."""
-    return np.array([-limits[1], limits[0]])
 
 
 def in_linkage(**changes: Callable[[float], float]) -> Callable[[Design], Design]:
@@ -214,12 +182,14 @@ _TILT = math.radians(0.1)
 
 # Step of the pipeline -> what takes its place, by the name of the fault in data/faults.toml.
 STEPS: dict[str, Steps] = {
-    "knee_sign": with_equilibrium(couples=shank_turned),
+    "knee_sign": with_equilibrium(couples=lambda moment: joint_couples(moment) | {"shank": moment.knee}),
     "thigh_lever": with_equilibrium(arm=without_length),
     "loads_at_joints": {"equilibrium": with_loads_at_joints},
     "map_by_crank_angle": {"joint_moment": by_crank_angle},
     "wrong_branch": in_result(Pipeline.motion, knee_below),
-    "wrong_rate": in_result(Pipeline.motion, knee_from_shank_alone),
+    "wrong_rate": in_result(
+        Pipeline.motion, lambda motion: ShankAlone(motion.design, motion.crank_angle, motion.points, motion.rotation)
+    ),
     "no_centripetal": in_result(Pipeline.motion, without_centripetal),
     "length_in_kinematics": in_result(Pipeline.motion, long_thigh),
     "directions_exchanged": in_map(DirectionsExchanged),
@@ -245,24 +215,28 @@ STEPS: dict[str, Steps] = {
     "reversed_start": in_keyframe("qvel", "hip", lambda speed: -speed),
     "six_digits": in_model("compiler", savecompiled=True, savecanonical=True),
     "late_torque": in_result(Pipeline.run, lambda run: replace(run, crank_moment=np.roll(run.crank_moment, 1))),
-    "turn_and_a_half": {"run": half_a_turn_more},
-    "no_pre_roll": {"run": without_pre_roll},
+    "turn_and_a_half": {"run": lambda *args, **own: replace(Pipeline.run(*args, **own | {"turns": 1.5}), turns=1)},
+    "no_pre_roll": {
+        "run": lambda steps, options=PLAIN, **own: Pipeline.run(steps, replace(options, pre_roll=1), **own)
+    },
     "coarse_step": {"run": coarser},
-    "no_rotary_inertia": in_result(Pipeline.loads, without_couples),
+    "no_rotary_inertia": in_result(
+        Pipeline.loads, lambda loads: {body: load._replace(couple=0 * load.couple) for body, load in loads.items()}
+    ),
     "inertia_not_scaled": {"loads": with_whole_couples},
 }
 # Step of a RideCase -> what takes its place, by the name of the fault in data/faults.toml.
 RIDE_STEPS: dict[str, Steps] = {
-    "freewheel_reversed": in_model("tendons", DRIVETRAIN, range=other_way)
+    "freewheel_reversed": in_model("tendons", DRIVETRAIN, range=lambda limits: np.array([-limits[1], limits[0]]))
     | in_result(RideCase.control, lambda control: control._replace(fixed=True)),
     "rims_once": in_model("joints", ROAD, armature=0.0),
-    "slope_reversed": in_equation(lambda ride: replace(ride, road=replace(ride.road, slope=-ride.road.slope))),
+    "slope_reversed": {"reference": cached_property(slope_reversed)},
     "air_twice": in_model("joints", ROAD, damping=lambda damping: 2 * np.asarray(damping)),
     "left_leg_unshifted": in_result(RideCase.control, lambda control: control._replace(leg_lag=0 * control.leg_lag)),
     "moments_late": in_result(
         RideCase.control, lambda control: control._replace(leg_lag=control.leg_lag + math.radians(10))
     ),
-    "one_leg_counted": {"record": OneLegCounted},
+    "one_leg_counted": {"record": type("OneLegCounted", (RoadRun,), {"legs": TWO_LEGS[:1]})},
     "rolling_unsigned": {"record": RollingUnsigned},
 }
 # Edits of the design where its file is read.

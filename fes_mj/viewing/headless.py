@@ -4,6 +4,7 @@ import ctypes
 import os
 import subprocess
 import sys
+from contextlib import suppress
 from importlib import import_module
 from importlib.metadata import PackageNotFoundError, files
 from pathlib import Path
@@ -58,25 +59,17 @@ def _load_wheel() -> None:
         library = next(Path(str(file.locate())) for file in files(_WHEEL) or [] if "libOSMesa" in file.name)
     except (PackageNotFoundError, StopIteration):
         raise MissingPartError(_MESSAGE) from None
-    pending = sorted(library.parent.glob("*.so*"))
-    while pending:  # they need each other without saying where to look: load until none is left
-        failed = [path for path in pending if not _loads(path)]
-        if failed == pending:
-            raise MissingPartError(_MESSAGE)
-        pending = failed
+    libraries = [*library.parent.glob("*.so*")]
+    for path in libraries * len(libraries):  # they need each other without saying where to look: in whatever order
+        with suppress(OSError):
+            ctypes.CDLL(str(path), ctypes.RTLD_GLOBAL)
     loader, usual = ctypes.cdll, ctypes.CDLL
     loader._dlltype = lambda name, mode=ctypes.DEFAULT_MODE: usual(  # type: ignore[attr-defined]
         str(library) if str(name).startswith("libOSMesa") else name, mode
     )
     try:
         import_module("mujoco.osmesa")
+    except (ImportError, OSError):
+        raise MissingPartError(_MESSAGE) from None
     finally:
         loader._dlltype = usual  # type: ignore[attr-defined]
-
-
-def _loads(path: Path) -> bool:
-    try:
-        ctypes.CDLL(str(path), ctypes.RTLD_GLOBAL)
-    except OSError:
-        return False
-    return True

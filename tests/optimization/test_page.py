@@ -69,8 +69,8 @@ def test_every_objective_of_the_front_is_drawn_and_tabled(html: str, front: Fron
 
 def test_without_smoothness_there_is_no_column_of_it(front: Front) -> None:
     plain = Front(front.x, front.power, None, 2)
-    assert plain.columns == ("design", "p1p2, W", "p1p3, W")
-    assert [len(row) for row in plain.rows] == [3, 3]
+    assert [*plain.table.columns] == ["design", "p1p2, W", "p1p3, W"]
+    assert [len(row) for row in plain.table.cells] == [3, 3]
     assert "fluctuation" not in plain.as_csv()
 
 
