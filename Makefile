@@ -2,7 +2,7 @@
 PYTHON ?= python3
 VENV ?= .venv
 BIN = $(VENV)/bin
-EXTRAS = video,report,paper,optimize,cluster
+EXTRAS = video,report,paper,explore,optimize,cluster
 GROUPS = --group test --group lint --group docs --group mjx
 PIP = $(BIN)/pip install --quiet -c constraints.txt
 PYTEST = $(BIN)/python -m pytest --numprocesses auto --dist worksteal
@@ -86,7 +86,7 @@ dist: $(VENV)/.ready
 		(cd dist && empty/bin/fes_mj simulate d1 -q) || exit 1; \
 	done
 
-$(VENV)/.for-demo: WANTED = -e '.[video]'
+$(VENV)/.for-demo: WANTED = -e '.[video,explore]'
 $(VENV)/.ready: WANTED = -e '.[$(EXTRAS)]' $(GROUPS)
 $(VENV)/.for-demo $(VENV)/.ready: pyproject.toml constraints.txt
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \

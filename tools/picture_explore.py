@@ -19,20 +19,20 @@ ANGLE = 215  # deg, at which leg and linkage do not hide each other
 def main() -> None:
     """Open the page in Chromium, shorten D1's crank, and keep what is seen."""
     answers = Answers(fes_mj.load_design("d1"), fes_mj.load_moments())
-    with Server(answers, "127.0.0.1", 0) as server, sync_playwright() as driver:
-        threading.Thread(target=server.serve_forever, daemon=True).start()
+    server = Server(answers, "127.0.0.1", 0)
+    threading.Thread(target=server.run, daemon=True).start()
+    with sync_playwright() as driver:
         browser = driver.chromium.launch(executable_path=shutil.which("chromium"), args=["--no-sandbox"])
         page = browser.new_page(viewport=SIZE)
         page.goto(server.address)
-        page.wait_for_function("document.body.dataset.updates > 0")
+        page.wait_for_selector("body[data-updates='1']")
         page.fill("#number-R2", str(CRANK))
         page.press("#number-R2", "Enter")
-        page.wait_for_function("document.body.dataset.updates > 1")
+        page.wait_for_selector("body[data-updates='2']")
         page.fill("#angle", str(ANGLE))
         page.evaluate("document.activeElement.blur()")
         page.screenshot(path=PICTURE)
         browser.close()
-        server.shutdown()
 
 
 if __name__ == "__main__":

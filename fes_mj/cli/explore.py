@@ -5,7 +5,8 @@ from typing import Annotated
 from cyclopts import Parameter
 from cyclopts.validators import Number
 
-from fes_mj.cli.options import DesignName, MomentsOptions
+from fes_mj.cli.options import DesignName, Flag, MomentsOptions
+from fes_mj.common.errors import require_extra
 from fes_mj.linkage.design_file import load_design
 
 _DEFAULTS = MomentsOptions()
@@ -20,17 +21,20 @@ def explore(
     port: Annotated[int, Parameter(validator=Number(gte=0, lte=65535))] = PORT,
     host: str = THIS_MACHINE,
     browser: bool = True,
+    debug: Flag = False,
 ) -> int:
     """Drag the dimensions of a design in the browser and see at once what they do, until Ctrl-C.
 
     Args:
         port: Of the page on this machine; 0 takes any that is free.
-        host: Address to listen on. Any but the default can be reached by others, who need no password.
+        host: Address to listen on. At any but the default others can use the page too, if they know its whole address.
         browser: Open the page in the browser.
+        debug: Print where an answer failed, if that was not expected.
     """
     loaded, moments = load_design(design), options.load_moments()
+    require_extra("explore", "starlette", "uvicorn")
     from fes_mj.explore.answers import Answers
     from fes_mj.explore.server import serve
 
-    serve(Answers(loaded, moments), host, port, browser)
+    serve(Answers(loaded, moments), host, port, browser, debug)
     return 0

@@ -14,7 +14,7 @@ from fes_mj.common.errors import InputError
 from fes_mj.common.units import RPM
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.design_file import load_design
-from fes_mj.linkage.variables import VARIABLES
+from fes_mj.linkage.variables import VARIABLES, require_cadence
 from fes_mj.moments.files import load_moments, measured_files
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.torque_velocity import load_torque_velocity
@@ -184,10 +184,4 @@ def crank_speed(cadence: float | None, design: Design) -> float:
     """Crank speed in rad/s of a --cadence in rpm, by default the design's own."""
     if cadence is not None:
         return cadence * RPM
-    allowed, own = VARIABLES["cadence_rpm"], design.linkage.cadence / RPM
-    if not allowed.accepts(own):
-        raise InputError(
-            f"{design.name}: linkage.gear_ratio is {design.linkage.gear_ratio:g}, which makes {own:.3g} rpm at the "
-            f"tricycle's speed; it must be {allowed.allowed}: change the ratio or give --cadence"
-        )
-    return design.linkage.cadence
+    return require_cadence(design, "change the ratio or give --cadence")

@@ -10,7 +10,7 @@ from fes_mj.common.text import printable
 from fes_mj.common.units import RPM
 from fes_mj.linkage.design import Design, Linkage
 from fes_mj.linkage.design_file import design_toml, read_design
-from fes_mj.linkage.variables import COMPONENTS, VARIABLES, Component, component
+from fes_mj.linkage.variables import COMPONENTS, VARIABLES, Component, component, require_cadence
 
 # Unit of files -> unit of the page, how many of it, how far a slider goes to either side, its step (page's unit).
 _SCALES: dict[str, tuple[str, float, float, float]] = {
@@ -31,12 +31,14 @@ def content_of(design: Design) -> dict[str, Any]:
 
 
 def design_of(content: Any) -> Design:
-    """The design again. Raises InputError as design_file.load_design for what no design file may say."""
+    """The design again. Raises InputError as design_file.load_design, and for a cadence that no command runs."""
     if not isinstance(content, dict) or not isinstance(content.get("name"), str):
         raise InputError("the page asked about no design; it must send one with a name")
     tables = {key: value for key, value in content.items() if key != "name"}
     name = printable(content["name"])
-    return read_design(Section(Path(name), "", tables), name)
+    design = read_design(Section(Path(name), "", tables), name)
+    require_cadence(design)
+    return design
 
 
 def dimensions() -> list[dict[str, Any]]:

@@ -1,124 +1,194 @@
 """The page over HTTP, on this machine alone unless asked: its files, and the answers to its questions as JSON."""
 
+import asyncio
 import errno
 import ipaddress
 import json
+import logging
+import secrets
+import socket
 import threading
 import webbrowser
-from http import HTTPStatus
-from http.server import BaseHTTPRequestHandler
+from collections.abc import AsyncIterator, Callable
 from pathlib import Path
-from socketserver import ThreadingTCPServer
-from typing import Any
+from tempfile import TemporaryDirectory
 
-from fes_mj.common.console import say
+import anyio
+import anyio.to_process
+import anyio.to_thread
+import h11
+import uvicorn
+from starlette.applications import Starlette
+from starlette.exceptions import HTTPException
+from starlette.middleware import Middleware
+from starlette.middleware.body_limit import RequestBodyLimitMiddleware
+from starlette.requests import Request
+from starlette.responses import Response, StreamingResponse
+from starlette.routing import Mount, Route
+from starlette.staticfiles import StaticFiles
+from uvicorn.protocols.http.h11_impl import H11Protocol
+
+from fes_mj.common.console import complain, say
 from fes_mj.common.errors import InputError, MissingPartError, UnstableError
-from fes_mj.common.reading import LARGEST_INPUT
-from fes_mj.explore.answers import Answers
+from fes_mj.explore.answers import Answer, Answers, as_question
+from fes_mj.explore.runs import RUNS, progress
 
-_FOLDER = Path(__file__).parent / "page"
-_KINDS = {".html": "text/html", ".css": "text/css", ".js": "text/javascript"}
-_FILES = {"/": "page.html", **{f"/{path.name}": path.name for path in _FOLDER.iterdir() if path.suffix != ".html"}}
+PATIENCE = 10  # s, for the head of a request, then for its body, then for the next one on the same connection
+LARGEST_QUESTION = 16 * 2**20  # bytes: more than ten minutes of a trial as OpenSim writes it
+CONNECTIONS = 200  # at a time
+TICK = 0.5  # s between two looks at how far a run has come
+HEADERS = {
+    "Cache-Control": "no-store",
+    "Content-Security-Policy": "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; "
+    "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
+    "Referrer-Policy": "no-referrer",  # the address holds the token
+    "X-Content-Type-Options": "nosniff",
+}
+EXPECTED = (InputError, UnstableError, MissingPartError)
+_PAGE = Path(__file__).parent / "page"
+_LOG = logging.getLogger(__name__)
 
 
-class Server(ThreadingTCPServer):
-    """Each request is answered in a thread of its own, so that a simulation holds up no slider.
+def application(answers: Answers, token: str, hosts: set[str] | None) -> Starlette:
+    """The page's files by GET; a POST of a JSON object to /NAME, with the token as X-Token, gets the answer NAME.
 
-    private: whether only this machine can reach it.
+    hosts: the names, in lower case, under which the page is reached; None for any. Runs answer line by line: objects
+    with "progress", then the answer or an object with "error".
     """
 
-    daemon_threads = True
-    allow_reuse_address = True  # at once after the last run
-
-    def __init__(self, answers: Answers, host: str, port: int) -> None:
-        """Listen. Raises InputError for a port that is taken or an address that is not this machine's."""
-        self.answers, self.host = answers, host
+    async def ask(request: Request) -> Response:
+        here = hosts is None or request.url.hostname in hosts
+        if not here or not secrets.compare_digest(request.headers.get("x-token", "").encode(), token.encode()):
+            raise HTTPException(403, "only the page may ask: open the address that fes_mj explore has printed")
         try:
-            super().__init__((host, port), Handler)
-            self.private = ipaddress.ip_address(str(self.server_address[0])).is_loopback
-        except OSError as error:
-            if error.errno == errno.EADDRINUSE:
-                raise InputError(
-                    f"--port {port} is in use by another program; give another, or 0 for any that is free"
-                ) from None
-            raise InputError(f"cannot listen on {host}, port {port}: {error.strerror}") from None
+            with anyio.fail_after(PATIENCE):
+                body = await request.body()
+        except TimeoutError:
+            raise HTTPException(408, f"the question did not come within {PATIENCE} s") from None
+        name, question = request.path_params["name"], as_question(body)
+        if name in RUNS:
+            return StreamingResponse(_lines(answers.run(name, question)), media_type="application/x-ndjson")
+        if name not in answers.by_name:
+            raise HTTPException(404, f"the page cannot ask for {name!r}")
+        answer = await anyio.to_thread.run_sync(lambda: as_json(answers.by_name[name](question)))
+        return Response(answer, media_type="application/json")
 
-    @property
-    def address(self) -> str:
-        """Of the page."""
-        return f"http://{self.host}:{self.server_address[1]}"
+    return Starlette(
+        routes=[Route("/{name}", ask, methods=["POST"]), Mount("/", StaticFiles(directory=_PAGE, html=True))],
+        middleware=[Middleware(RequestBodyLimitMiddleware, max_body_size=LARGEST_QUESTION)],
+        exception_handlers=dict.fromkeys((HTTPException, *EXPECTED, Exception), _refuse),
+    )
 
 
-class Handler(BaseHTTPRequestHandler):
-    """GET gives the page's files; POST /NAME with a JSON object asks for the answer of this name."""
-
-    server: Server
-    protocol_version = "HTTP/1.1"
-    disable_nagle_algorithm = True  # headers and body are sent one after the other: the second must not wait
-
-    def do_GET(self) -> None:
-        if self.path not in _FILES:
-            return self._send(HTTPStatus.NOT_FOUND, "text/plain", b"there is no such page")
-        file = _FOLDER / _FILES[self.path]
-        return self._send(HTTPStatus.OK, f"{_KINDS[file.suffix]}; charset=utf-8", file.read_bytes())
-
-    def do_POST(self) -> None:
-        status, answer = self._answer()
-        self._send(status, "application/json", as_json(answer))
-
-    def _answer(self) -> tuple[HTTPStatus, dict[str, Any]]:
-        size = self.headers.get("Content-Length", "")
-        if not size.isdecimal() or int(size) > LARGEST_INPUT:
-            self.close_connection = True
-            return HTTPStatus.REQUEST_ENTITY_TOO_LARGE, {"error": f"at most {LARGEST_INPUT >> 20} MiB can be sent"}
-        text, ask = self.rfile.read(int(size)), self.server.answers.by_name.get(self.path.removeprefix("/"))
-        if not ask or not self._from_the_page():
-            return HTTPStatus.FORBIDDEN, {"error": "only the page itself may ask, and only what it knows"}
+async def _lines(run: Callable[[Path], Answer]) -> AsyncIterator[bytes]:
+    """Progress of a run in a process of its own, and its answer; the process ends when nobody listens any more."""
+    with TemporaryDirectory() as folder:
+        work = asyncio.create_task(anyio.to_process.run_sync(run, Path(folder), cancellable=True))
         try:
-            return HTTPStatus.OK, ask(_question(text))
-        except (InputError, UnstableError, MissingPartError) as error:
-            return HTTPStatus.BAD_REQUEST, {"error": str(error)}
-
-    def _from_the_page(self) -> bool:
-        """Not another site in the same browser: those can neither send JSON nor come here by a name of theirs."""
-        host = self.headers.get("Host", "").rpartition(":")[0].strip("[]")
-        here = not self.server.private or host in (self.server.host, "localhost")
-        return here and self.headers.get_content_type() == "application/json"
-
-    def _send(self, status: HTTPStatus, kind: str, body: bytes) -> None:
-        try:
-            self.send_response(status)
-            self.send_header("Content-Type", kind)
-            self.send_header("Content-Length", str(len(body)))
-            self.send_header("Cache-Control", "no-store")
-            self.end_headers()
-            self.wfile.write(body)
-        except OSError:  # the page was closed meanwhile
-            self.close_connection = True
-
-    def log_message(self, *_: Any) -> None:
-        """Nothing: the terminal is for the address."""
+            while not (await asyncio.wait([work], timeout=TICK))[0]:
+                if text := progress(Path(folder)):
+                    yield as_json({"progress": text}) + b"\n"
+            yield as_json(work.result())
+        except Exception as error:
+            _LOG.error("a run failed", exc_info=error)
+            yield as_json({"error": _refusal(error)[1]})
+        finally:
+            work.cancel()
+            with anyio.CancelScope(shield=True):  # until it has ended: its folder goes next
+                await asyncio.wait([work])
 
 
-def as_json(answer: dict[str, Any]) -> bytes:
+async def _refuse(_: Request, error: Exception) -> Response:
+    status, sentence = _refusal(error)
+    return Response(as_json({"error": sentence}), status, media_type="application/json")
+
+
+def _refusal(error: Exception) -> tuple[int, str]:
+    """Status and sentence of an answer that there is not."""
+    if isinstance(error, HTTPException):
+        return error.status_code, error.detail
+    if isinstance(error, EXPECTED):
+        return 400, str(error)
+    return 500, f"fes_mj failed at this ({type(error).__name__}: {error}); with --debug its terminal says where"
+
+
+def as_json(answer: Answer) -> bytes:
     """The answer as the page reads it: arrays are lists, and every number is one that JSON has."""
     return json.dumps(answer, default=lambda array: array.tolist(), allow_nan=False, separators=(",", ":")).encode()
 
 
-def _question(text: bytes) -> dict[str, Any]:
+class Protocol(H11Protocol):
+    """HTTP of which a request's head must be whole in time: uvicorn itself waits for the rest of one for ever."""
+
+    def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
+        super().connection_made(transport)
+        self.timeout_keep_alive_task = self.loop.call_later(PATIENCE, self.timeout_keep_alive_handler)
+
+    def data_received(self, data: bytes) -> None:
+        timer, self.timeout_keep_alive_task = self.timeout_keep_alive_task, None  # or any byte would stop it
+        super().data_received(data)
+        if timer and self.conn.their_state is h11.IDLE:
+            self.timeout_keep_alive_task = timer
+        elif timer:
+            timer.cancel()
+
+
+class Server(uvicorn.Server):
+    """Listens from the beginning, and answers when it runs.
+
+    private: whether only this machine can reach it. address: of the page, with its token.
+    """
+
+    def __init__(self, answers: Answers, host: str, port: int) -> None:
+        """Raises InputError for a port that is taken or an address that is not this machine's."""
+        self.listener, token = _listen(host, port), secrets.token_urlsafe(16)
+        ip, port = self.listener.getsockname()[:2]
+        self.private = ipaddress.ip_address(ip).is_loopback
+        self.address = f"http://{f'[{host}]' if ':' in host else host}:{port}/?token={token}"
+        hosts = {host.lower(), ip, "localhost"} if self.private else None
+        config = uvicorn.Config(
+            application(answers, token, hosts),
+            http=Protocol,
+            ws="none",
+            lifespan="off",
+            log_config=None,
+            headers=[*HEADERS.items()],
+            server_header=False,
+            limit_concurrency=CONNECTIONS,
+            timeout_keep_alive=PATIENCE,
+            timeout_graceful_shutdown=1,
+        )
+        super().__init__(config)
+
+    def run(self, sockets: list[socket.socket] | None = None) -> None:
+        super().run(sockets or [self.listener])
+
+
+def _listen(host: str, port: int) -> socket.socket:
+    if not host:
+        raise InputError(f"--host is {host!r}; it must be a name or an address of this machine")
     try:
-        question = json.loads(text)
-    except (ValueError, RecursionError):
-        question = None
-    if not isinstance(question, dict):
-        raise InputError("a question must be a JSON object")
-    return question
+        family, _, _, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
+        return socket.create_server(address, family=family)
+    except (OSError, ValueError) as error:  # ValueError: a name that none can be
+        if isinstance(error, OSError) and error.errno == errno.EADDRINUSE:
+            raise InputError(
+                f"--port {port} is in use by another program; give another, or 0 for any that is free"
+            ) from None
+        reason = getattr(error, "strerror", error)
+        raise InputError(f"cannot listen on {host}, port {port}: {reason}") from None
 
 
-def serve(answers: Answers, host: str, port: int, browser: bool) -> None:
-    """Say the address, open it in the browser if wanted, and answer until Ctrl-C (KeyboardInterrupt)."""
-    with Server(answers, host, port) as server:
-        say(f"The designer's page: {server.address} (Ctrl-C ends it)")
-        if browser:
-            threading.Thread(target=webbrowser.open, args=(server.address,), daemon=True).start()
-        server.serve_forever()
+def serve(answers: Answers, host: str, port: int, browser: bool, debug: bool) -> None:
+    """Say the address, open it in the browser if wanted, and answer until a signal ends it (KeyboardInterrupt).
+
+    debug: let the terminal say where what was not expected has happened.
+    """
+    logging.disable(logging.NOTSET if debug else logging.CRITICAL)
+    server = Server(answers, host, port)
+    say(f"The designer's page: {server.address} (Ctrl-C ends it)")
+    if not server.private:
+        complain(f"everybody who can connect to {host} and knows this address may use the page")
+    if browser:
+        threading.Thread(target=webbrowser.open, args=(server.address,), daemon=True).start()
+    server.run()

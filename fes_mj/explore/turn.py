@@ -30,13 +30,13 @@ _ANGLES = np.linspace(0, 2 * np.pi, POINTS, endpoint=False)
 def turn(design: Design, moments: Mapping[str, JointMoments], legs: int = 1) -> dict[str, Any]:
     """A turn under each of several moments; curves are of all legs together, numbers of one.
 
-    Without power, because the linkage does not turn or a joint never enters the moments' range, "error" says why.
+    Without power, because the linkage does not turn or a joint never enters the moments' range, "why" says so.
     """
     answer = pose.as_json(design, _ANGLES) | {"cadence_rpm": design.linkage.cadence / RPM}
     try:
         solved = {name: quasi_static(design, own, points=POINTS) for name, own in moments.items()}
     except InputError as error:
-        return answer | {"error": str(error), "broken": broken(design, None)}
+        return answer | {"why": str(error), "broken": broken(design, None)}
     first = next(iter(solved.values()))
     return answer | {
         "broken": broken(design, first),

@@ -12,6 +12,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from fes_mj.common.arrays import FloatArray
+from fes_mj.common.errors import InputError
+from fes_mj.common.units import RPM
 from fes_mj.linkage.design import Design
 
 ALL, SIX_BAR = ("trt", "crt", "cdt"), ("crt", "cdt")
@@ -97,6 +99,17 @@ def component(design: Design, name: str) -> float:
     variable, part = COMPONENTS[name]
     value = getattr(getattr(design, variable.owner), variable.attribute)
     return nearest_degrees(value) if variable.unit == "deg" else float(getattr(value, part) if part else value)
+
+
+def require_cadence(design: Design, way_out: str = "change the ratio") -> float:
+    """A design's own crank speed, rad/s. Raises InputError for one that is no cadence a run can have."""
+    allowed, own = VARIABLES["cadence_rpm"], design.linkage.cadence / RPM
+    if not allowed.accepts(own):
+        raise InputError(
+            f"{design.name}: linkage.gear_ratio is {design.linkage.gear_ratio:g}, which makes {own:.3g} rpm at the "
+            f"tricycle's speed; it must be {allowed.allowed}: {way_out}"
+        )
+    return design.linkage.cadence
 
 
 def nearest_degrees(angle: float) -> float:

@@ -47,6 +47,13 @@ def test_refusals_are_those_of_design_files(change: dict[str, object], message: 
         design_of(content)
 
 
+def test_a_cadence_that_no_command_runs_is_refused() -> None:
+    content = content_of(fes_mj.load_design("d1"))
+    content["linkage"]["gear_ratio"] = 20
+    with pytest.raises(InputError, match=r"d1: linkage.gear_ratio is 20, which makes 918 rpm"):
+        design_of(content)
+
+
 @pytest.mark.parametrize("content", [None, [], {}, {"name": 3}])
 def test_what_is_no_design(content: object) -> None:
     with pytest.raises(InputError):

@@ -15,6 +15,7 @@ from fes_mj.linkage.design import Design
 from fes_mj.linkage.variables import replaced
 from fes_mj.moments.fourier import fourier
 from fes_mj.statics.turn import quasi_static
+from tests.explore.conftest import question
 
 ROUNDED = 0.5001 * 10.0**-DIGITS
 GROUPS = {name: fes_mj.load_moments(name) for name in ("p1p2", "p1p3")}
@@ -69,15 +70,15 @@ def test_two_legs_are_half_a_turn_apart() -> None:
 
 def test_a_linkage_that_does_not_turn_says_why_and_is_still_drawn() -> None:
     answer = turn(replaced(fes_mj.load_design("d1"), {"R2": 0.25}), GROUPS)
-    assert "rocker and coupler cannot close at crank angle" in answer["error"]
-    assert f"{answer['failing_deg']:.1f} deg" in answer["error"]
+    assert "rocker and coupler cannot close at crank angle" in answer["why"]
+    assert f"{answer['failing_deg']:.1f} deg" in answer["why"]
     assert answer["bodies"]
     assert "moments" not in answer
 
 
 def test_a_joint_that_never_has_moments_says_so() -> None:
     answer = turn(replaced(fes_mj.load_design("d1"), {"seat_angle": -80.0}), GROUPS)
-    assert "it never comes into that range" in answer["error"]
+    assert "it never comes into that range" in answer["why"]
     assert answer["failing_deg"] is None
 
 
@@ -94,8 +95,8 @@ def test_from_slider_to_new_curves(answers: Answers) -> None:
     """In at most 100 ms of processor time, with all that is sent to the page; what runs beside it only adds to that."""
     design, took = fes_mj.load_design("d1"), []
     for n in range(11):
-        question = {"design": content_of(replaced(design, {"R2": 0.155 + 0.0005 * n}))}
+        asked = question(design=content_of(replaced(design, {"R2": 0.155 + 0.0005 * n})))
         start = time.thread_time()
-        as_json(answers.turn(question))
+        as_json(answers.turn(asked))
         took.append(time.thread_time() - start)
     assert min(took[1:]) <= 0.1

@@ -108,8 +108,8 @@ function show(dragging) {
   const { turn } = state;
   const failing = turn.failing_deg !== null;
   scene.show(turn, turn.legs, dragging);
-  $("error").hidden = !turn.error;
-  $("error").textContent = turn.error || "";
+  $("error").hidden = !turn.why;
+  $("error").textContent = turn.why || "";
   if (failing && !state.failing) {
     state.resume = state.playing;
     play(false);
@@ -242,8 +242,12 @@ async function openDesign(file) {
   showDesigns();
 }
 
-async function openMoments(file) {
-  const answer = await ask("open-moments", { name: file.name, text: await file.text() });
+// files: one, or a measurement file with those that it names.
+async function openMoments(...files) {
+  const main = files.find((file) => file.name.endsWith(".toml")) ?? files[0];
+  const texts = await Promise.all(files.map(async (file) => [file.name, await file.text()]));
+  const { [main.name]: text, ...beside } = Object.fromEntries(texts);
+  const answer = await ask("open-moments", { name: main.name, text, beside });
   start.moments = answer.moments;
   state.moments = answer.name;
   options($("moments"), start.moments, state.moments);
@@ -265,8 +269,8 @@ $("model").addEventListener("click", attempt(async () => download(await ask("mod
 for (const [button, input, action] of [["open", "open-file", openDesign], ["open-moments", "moments-file", openMoments]]) {
   $(button).addEventListener("click", () => $(input).click());
   $(input).addEventListener("change", attempt(async () => {
-    const [file] = $(input).files;
-    if (file) await action(file);
+    const files = [...$(input).files];
+    if (files.length) await action(...files);
     $(input).value = ""; // the same file may be chosen again
   }));
 }

@@ -26,7 +26,7 @@ export class Runs {
     box.replaceChildren(line);
     try {
       const answer = await ask(button.dataset.run, question);
-      line.className = answer.agrees ? "good" : "bad";
+      line.className = answer.ok ? "good" : "bad";
       line.textContent = `${this.of === this.snapshot() ? "" : "Of the design as it was: "}${answer.verdict}`;
       box.append(table(answer.checks));
     } catch (error) {

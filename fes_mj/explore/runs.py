@@ -1,0 +1,98 @@
+"""Runs that take seconds or minutes, each in a process of its own: asked for by name, stopped by ending the process.
+
+What they are asked was checked before (answers.Answers.run); what they answer is JSON. `state` is a folder that a run
+has for itself, and in which `progress` looks.
+"""
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+from fes_mj.common.checks import Check
+from fes_mj.common.console import number
+from fes_mj.common.text import typeset
+from fes_mj.common.units import KMH
+from fes_mj.common.writing import write_text
+from fes_mj.crosscheck.ride_case import RideCase
+from fes_mj.crosscheck.turn_case import Case
+from fes_mj.explore.dimensions import content_of
+from fes_mj.fit.seat import fit_seat, seat_text
+from fes_mj.linkage.design import Design
+from fes_mj.linkage.design_file import design_toml
+from fes_mj.moments.joint_moments import JointMoments
+from fes_mj.moments.torque_velocity import load_torque_velocity
+from fes_mj.optimization.findings import Findings
+from fes_mj.optimization.optimize import optimize
+from fes_mj.riding.ride import Ride, Road
+
+SEARCHES = 4
+
+
+def simulate(design: Design, moments: JointMoments, state: Path, *, legs: int) -> dict[str, Any]:
+    """As `fes_mj simulate`: the verdict in a sentence, and every check. Raises what Case raises."""
+    case = Case(design, moments, legs=legs)
+    power = (
+        f"mean power {case.simulation.power_mean:.2f} W against {case.statics.power_mean:.2f} W, {case.difference_text}"
+    )
+    return _checked("Dynamic and static", power, case.checks)
+
+
+def ride(design: Design, moments: JointMoments, state: Path, *, transmission: str, slope: float) -> dict[str, Any]:
+    """As `fes_mj ride`, slope in percent, in the same form. Raises what RideCase raises."""
+    hill = moments.at_speed(load_torque_velocity("hill"))
+    case = RideCase(Ride(design, hill, Road(slope=slope / 100), transmission=transmission))
+    trace = case.simulation.trace
+    result = f"it stops after {trace.stopped_at:.1f} s" if trace.stopped_at is not None else "it rides"
+    if trace.mean_speed is not None:
+        result += f", {trace.mean_speed / KMH:.2f} km/h at the end"
+    return _checked("The two solvers", result, case.checks)
+
+
+def fit(design: Design, moments: JointMoments, state: Path) -> dict[str, Any]:
+    """As `fes_mj fit` for the design's own rider: the design with its seat moved, or why no seat suits."""
+    result = fit_seat(design, design.rider, moments)
+    if result.static is None:
+        return {"ok": False, "verdict": typeset(f"No seat fits: {result.why}.")}
+    verdict = f"Best seat: {seat_text(result.seat)}; {result.static.power_mean:.2f} W."
+    return {"ok": True, "verdict": typeset(verdict), "design": content_of(result.design)}
+
+
+def optimise(design: Design, moments: JointMoments, state: Path) -> dict[str, Any]:
+    """As `fes_mj optimize --start DESIGN --speeds-of DESIGN`: the best of its kind that moves the joints no faster."""
+    start = str(state / "start.toml")
+    write_text(Path(start), design_toml(design))
+    kind, findings = design.linkage.kind, _findings(state)
+    optimum = optimize(kind, moments, searches=SEARCHES, start=start, compared_with=start, findings=findings)
+    verdict = f"Best design: {optimum.power:.2f} W, after {optimum.evaluations:,} evaluations."
+    return {"ok": True, "verdict": verdict, "design": content_of(optimum.design) | {"name": f"{design.name}-optimised"}}
+
+
+RUNS: dict[str, Callable[..., dict[str, Any]]] = {run.__name__: run for run in (simulate, ride, fit, optimise)}
+
+
+def progress(state: Path) -> str | None:
+    """How far a search has come, None before there is anything to say."""
+    findings = _findings(state)
+    if not (best := findings.best):
+        return None
+    return f"{best[0]:.2f} W so far; {len(findings.finished())} of {SEARCHES} searches are through"
+
+
+def _findings(state: Path) -> Findings:
+    return Findings(state / "best.toml", "", {})
+
+
+def _checked(who: str, result: str, checks: Sequence[Check]) -> dict[str, Any]:
+    """Of checks that hold together or not; the page shows `verdict` and a table."""
+    failed = ", ".join(check.name for check in checks if not check.ok)
+    verdict = f"{who} do not agree ({failed}): {result}." if failed else f"{who} agree: {result}."
+    rows = [
+        {
+            "name": check.name.replace("_", " "),
+            "value": number(check.value, check.unit),
+            "limit": number(check.limit, check.unit),
+            "ok": bool(check.ok),
+        }
+        for check in checks
+    ]
+    return {"ok": not failed, "verdict": typeset(verdict), "checks": rows}

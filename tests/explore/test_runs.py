@@ -1,0 +1,71 @@
+"""Runs say what the commands say."""
+
+from functools import partial
+from pathlib import Path
+
+import pytest
+
+import fes_mj
+from fes_mj.common.checks import Check
+from fes_mj.common.units import KMH
+from fes_mj.crosscheck.ride_case import RideCase
+from fes_mj.explore import runs
+from fes_mj.explore.dimensions import design_of
+from fes_mj.fit.seat import fit_seat, seat_text
+from fes_mj.linkage.design import Rider
+from fes_mj.moments.torque_velocity import load_torque_velocity
+from fes_mj.optimization.problem import make_problem
+from fes_mj.riding.ride import Ride, Road
+
+D1, P1P2 = fes_mj.load_design("d1"), fes_mj.load_moments()
+
+
+def test_simulate(tmp_path: Path) -> None:
+    case = fes_mj.Case(D1, P1P2)
+    run = runs.simulate(D1, P1P2, tmp_path, legs=1)
+    assert run["ok"]
+    assert f"mean power {case.simulation.power_mean:.2f} W" in run["verdict"]
+    assert [row["ok"] for row in run["checks"]] == [check.ok for check in case.checks]
+
+
+def test_a_check_that_fails_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("fes_mj.crosscheck.turn_case.check", lambda name, value, _: Check(name, value, limit=0.0))
+    run = runs.simulate(D1, P1P2, tmp_path, legs=1)
+    assert not run["ok"]
+    assert run["verdict"].startswith("Dynamic and static do not agree (mean_power")
+
+
+def test_ride(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(runs, "Ride", partial(Ride, duration=4.0))
+    moments = P1P2.at_speed(load_torque_velocity("hill"))
+    case = RideCase(Ride(D1, moments, Road(slope=0.02), transmission="fixed", duration=4.0))
+    run = runs.ride(D1, P1P2, tmp_path, transmission="fixed", slope=2)
+    assert run["ok"] == case.agrees
+    speed = case.simulation.trace.mean_speed
+    assert speed is None or f"{speed / KMH:.2f} km/h at the end" in run["verdict"]
+    assert [row["ok"] for row in run["checks"]] == [check.ok for check in case.checks]
+
+
+def test_fit(tmp_path: Path) -> None:
+    small = D1.with_rider(thigh=0.45, shank=0.47, mass=62, sex="female")
+    best = fit_seat(D1, Rider(0.45, 0.47, 62, "female"), P1P2)
+    run = runs.fit(small, P1P2, tmp_path)
+    assert seat_text(best.seat).replace("-", "\N{MINUS SIGN}") in run["verdict"]
+    seated = fes_mj.quasi_static(design_of(run["design"]), P1P2)
+    assert best.static
+    assert seated.power_mean == pytest.approx(best.static.power_mean, rel=1e-12)
+    giant = runs.fit(D1.with_rider(thigh=0.9, shank=0.9), P1P2, tmp_path)
+    assert not giant["ok"]
+    assert "design" not in giant
+
+
+def test_optimise(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert runs.progress(tmp_path) is None
+    monkeypatch.setattr(runs, "optimize", partial(fes_mj.optimize, budget=300))
+    run = runs.optimise(D1, P1P2, tmp_path)
+    found, problem = design_of(run["design"]), make_problem("cdt", P1P2, start="d1", compared_with="d1")
+    evaluation = problem.evaluate(problem.variables(found)[None])
+    assert evaluation.feasible.all()
+    assert f"{evaluation.power[0, 0]:.2f} W" in run["verdict"]
+    assert evaluation.power[0, 0] >= problem.evaluate(problem.variables(D1)[None]).power[0, 0]
+    assert runs.progress(tmp_path) == f"{evaluation.power[0, 0]:.2f} W so far; 4 of 4 searches are through"
