@@ -22,6 +22,7 @@ COMMANDS = {
         "explore": "Drag a design's dimensions in the browser and see at once what they do.",
         "fit": "Find the seat for a rider, or who of a population can ride.",
         "optimize": "Find linkages with more crank power, within the paper's limits, and simulate them.",
+        "draw": "Drawings, clearances, loads and sizes of a design, for a workshop.",
         "sweep": "Evaluate many designs, riders, cadences and moments; resumes where it was stopped.",
     },
     "Data and export": {

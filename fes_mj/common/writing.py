@@ -102,14 +102,15 @@ def require_results(folder: Path, stem: str, suffixes: Iterable[str], inputs: Co
 
 
 def write_results(contents: Mapping[Path, str | bytes]) -> None:
-    """Write the set into its folder; one that was made for it does not stay without it."""
-    folder = next(iter(contents)).parent
-    there = folder.exists()
-    make_folder(folder, "the results")
+    """Write the set into its folder, and folders in it; those that were made for it do not stay without it."""
+    folders = sorted({path.parent for path in contents})
+    made = [folder for folder in folders if not folder.exists()]
     try:
+        for folder in folders:
+            make_folder(folder, "the results")
         write_files(contents, unnamed=contents.keys())
     except BaseException:
-        if not there:
+        for folder in (folder for folder in made[::-1] if folder.exists()):
             folder.rmdir()
         raise
 

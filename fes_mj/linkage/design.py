@@ -140,10 +140,23 @@ class Rider:
 
 
 @dataclass(frozen=True)
+class Frame:
+    """What stands still around a linkage, m, seen from the hip; None is not known."""
+
+    tube: tuple[complex, complex] | None = None  # its middle line
+    tube_diameter: float | None = None
+    chainring_diameter: float | None = None
+    wheel_diameter: float | None = None
+    wheel_centre: complex | None = None
+    ground_height: float | None = None
+
+
+@dataclass(frozen=True)
 class Design:
     """A named linkage together with the rider who sits on it; or a batch, in which any number may be an array.
 
-    The arrays of a batch have the shape (designs, 1), as many designs in each.
+    links: names of links that are made, with mass (kg), centre (m) and moment of inertia (kg m^2) of each, as
+    inertia.Inertia; the others are bars. The arrays of a batch have the shape (designs, 1), as many designs in each.
 
     >>> shorter = fes_mj.load_design("r2").with_linkage(crank=0.038)
     >>> fes_mj.quasi_static(shorter, fes_mj.load_moments("p1p2"))
@@ -153,6 +166,8 @@ class Design:
     name: str
     linkage: Linkage
     rider: Rider = Rider()
+    frame: Frame = Frame()
+    links: tuple[tuple[str, Any], ...] = ()
 
     def with_linkage(self, **numbers: Any) -> "Design":
         """The design with these attributes of its linkage changed, lengths in m, angles in rad."""

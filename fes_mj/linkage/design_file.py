@@ -1,7 +1,7 @@
 """Design files: TOML in metres and degrees, read and written; the paper's designs are a folder of them."""
 
 import math
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -9,11 +9,11 @@ import numpy as np
 
 from fes_mj.common.arrays import FloatArray
 from fes_mj.common.errors import InputError
-from fes_mj.common.reading import DATA, Section, is_number, read_toml
+from fes_mj.common.reading import DATA, Section, is_list, is_number, read_toml
 from fes_mj.common.text import printable
-from fes_mj.linkage.design import ARCHITECTURES, BRANCHES, SEXES, Design, Linkage, Rider
+from fes_mj.linkage.design import ARCHITECTURES, BRANCHES, SEXES, Design, Frame, Linkage, Rider
 from fes_mj.linkage.riders import PRESETS, preset
-from fes_mj.linkage.variables import LONGEST, VARIABLES, Variable, nearest_degrees
+from fes_mj.linkage.variables import LONGEST, SHORTEST, VARIABLES, Variable, nearest_degrees
 
 DESIGNS = ("trt", "r1", "r2", "d1", "d2")
 DIMENSIONS = ("identified", "printed")
@@ -59,7 +59,7 @@ def identified_draws(name: str) -> dict[str, FloatArray]:
 
 def read_design(content: Section, name: str) -> Design:
     """A design from the content of a design file. Raises InputError as load_design."""
-    content.only(("linkage", "rider"))
+    content.only(("linkage", "rider", "frame"))
     linkage = content.section("linkage")
     if isinstance(linkage.content.get("rider"), str):
         raise InputError(f"{content.path}: rider = ... stands in [linkage]; move it above the first table")
@@ -67,7 +67,33 @@ def read_design(content: Section, name: str) -> Design:
     words = ("kind",) if kind == "trt" else ("kind", "branch")
     numbers = read_values(linkage, kind, *words)
     branch = linkage.choice("branch", BRANCHES, Linkage.branch)
-    return Design(name, Linkage(kind, **numbers, branch=branch), _rider(content, kind))
+    return Design(name, Linkage(kind, **numbers, branch=branch), _rider(content, kind), read_frame(content))
+
+
+def read_frame(content: Section) -> Frame:
+    """What a table [frame] says; of the tube and the wheel all or nothing."""
+    table = content.section("frame")
+    values: dict[str, Any] = {}
+    table.only(field.name for field in fields(Frame))
+    for key in table.content:
+        if key in ("tube", "wheel_centre"):
+            count = 2 if key == "tube" else 1
+            points = table.content[key] if key == "tube" else [table.content[key]]
+            if not is_list(points, lambda point: is_list(point, _reachable, 2), count):
+                table.refuse(key, table.content[key], f"{'two points' if count == 2 else 'a point'} [x, y] in metres")
+            ends = tuple(complex(*point) for point in points)
+            values[key] = ends if key == "tube" else ends[0]
+        else:
+            low = SHORTEST if key.endswith("diameter") else -LONGEST
+            values[key] = table.number(key, low, LONGEST, f"a length in metres from {low:g} to {LONGEST:g}")
+    for one, other in (("tube", "tube_diameter"), ("wheel_centre", "wheel_diameter")):
+        if (one in values) != (other in values):
+            table.require([one, other], "of a tube and of a wheel both the place and the diameter are needed")
+    return Frame(**values)
+
+
+def _reachable(value: object) -> bool:
+    return is_number(value) and abs(float(str(value))) <= LONGEST
 
 
 def _rider(content: Section, kind: str) -> Rider:
@@ -136,7 +162,16 @@ def design_toml(design: Design, comment: str = "") -> str:
             value = getattr(owner, variable.attribute)
             if not (variable.implied and value == getattr(type(owner), variable.attribute)):
                 lines.append(f"{symbol} = {_written(value, variable)}")
+    known = {name: value for name, value in vars(design.frame).items() if value is not None}
+    lines += ["[frame]"] * bool(known) + [f"{name} = {_plain(value)}" for name, value in known.items()]
     return "\n".join(lines) + "\n"
+
+
+def _plain(value: float | complex | tuple[complex, ...]) -> str:
+    """A number, a point or several as TOML."""
+    if isinstance(value, tuple):
+        return f"[{', '.join(map(_plain, value))}]"
+    return f"[{value.real!r}, {value.imag!r}]" if isinstance(value, complex) else repr(float(value))
 
 
 def _written(value: Any, variable: Variable) -> str:

@@ -71,7 +71,7 @@ def inertias(design: Design) -> dict[str, Inertia]:
         if body == linkage.architecture.pedal_body and body != "crank":
             joint = 0 if body == "coupler" else length  # the rocker joint in this body's frame
             bodies[body] = combine(bodies[body], _bar(joint, length * linkage.pedal_offset))
-    return bodies
+    return bodies | dict(design.links)
 
 
 def foot_points(design: Design) -> tuple[Any, Any, Any]:

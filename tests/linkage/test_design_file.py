@@ -37,6 +37,39 @@ def test_the_readme_example_of_the_format_is_accepted(tmp_path: Path) -> None:
     assert (design.rider.thigh, design.rider.shank, design.rider.mass) == (0.5, 0.52, 75.0)
 
 
+FRAME = """[frame]
+tube = [[0.06, -0.14], [-0.62, 0.2]]
+tube_diameter = 0.04
+wheel_centre = [0.1, -0.25]
+wheel_diameter = 0.5
+ground_height = -0.5
+"""
+
+
+def test_a_frame_reads_back_as_it_was_written(tmp_path: Path) -> None:
+    design = load_design(written(tmp_path, FRAME))
+    assert design.frame.tube == (0.06 - 0.14j, -0.62 + 0.2j)
+    assert (design.frame.wheel_centre, design.frame.chainring_diameter) == (0.1 - 0.25j, None)
+    path = tmp_path / "mine.toml"
+    path.write_text(design_toml(design))
+    assert load_design(path) == design
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("tube_diameter = 0.04\n", "", r"frame\.tube_diameter is missing.*place and the diameter"),
+        ("[[0.06, -0.14], [-0.62, 0.2]]", "[0.06, -0.14]", r"frame\.tube is \[0\.06, -0\.14\]; it must be two points"),
+        ("[0.1, -0.25]", "[10, -25]", r"frame\.wheel_centre is \[10, -25\]; it must be a point"),
+        ("= -0.5", "= -50", r"frame\.ground_height is -50; it must be a length in metres"),
+        ("ground_height", "road", r"unknown key frame\.road; allowed here: tube, tube_diameter"),
+    ],
+)
+def test_what_a_frame_cannot_be_is_named(old: str, new: str, words: str, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=words):
+        load_design(written(tmp_path, FRAME.replace(old, new)))
+
+
 @pytest.mark.parametrize(
     ("changes", "words"),
     [

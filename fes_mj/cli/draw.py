@@ -1,0 +1,109 @@
+"""`fes_mj draw`: what a workshop needs of a design."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Any
+
+import numpy as np
+from cyclopts import Parameter
+from cyclopts.validators import Number
+
+from fes_mj.cli.options import DesignName, LoadOptions, Out, PrintOptions
+from fes_mj.cli.tables import heading
+from fes_mj.common.console import conclude, print_table, say
+from fes_mj.common.errors import require_extra
+from fes_mj.common.writing import require_folder, require_replaceable, write_results
+from fes_mj.linkage.plates import hole_places
+from fes_mj.statics.turn import quasi_static
+
+if TYPE_CHECKING:
+    from fes_mj.statics.sizes import Build
+
+_LOAD, _PRINT = LoadOptions(), PrintOptions()
+POINTS = 720  # crank angles at which forces are looked at
+
+
+def draw(
+    design: DesignName,
+    /,
+    *,
+    out: Out,
+    material: str = "aluminium",
+    safety: Annotated[float, Parameter(validator=Number(gte=1, lte=20))] = 2.0,
+    load: LoadOptions = _LOAD,
+    options: PrintOptions = _PRINT,
+) -> int:
+    """Size links and pins of a design, lay them out in layers, and write what a workshop needs.
+
+    Into the folder go links/LINK.dxf in full size, the sheet (sheet.dxf, .svg, .pdf), links.csv with every hole, and
+    pin_forces.csv with the force on every pin over a turn. Exit code 1 if anything that moves meets the seat or, where
+    the design file has a table [frame], the wheel or the ground.
+
+    Args:
+        out: The folder; it is made if its parent exists.
+        material: Of the links: aluminium, steel or stainless.
+        safety: Factor against yielding and buckling.
+    """
+    require_extra("build", "shapely", "ezdxf", "matplotlib")
+    loaded, moments, cadence = load.load(design)
+    require_folder(out if out.exists() else out.parent, "the drawings")
+    from fes_mj.drawing import folder
+    from fes_mj.statics.sizes import build
+
+    paths = {out / name: name for name in folder.names(hole_places(loaded))}
+    require_replaceable((path for path in paths if path.parent.exists()), "the drawings", load.inputs(design))
+    made = build(quasi_static(loaded, moments, cadence, POINTS), material, safety)
+    files = folder.contents(made)
+    write_results({path: files[name] for path, name in paths.items()})
+    options.show(lambda: _content(made) | {"files": [str(path) for path in paths]}, lambda: _print(made), folder=out)
+    return 1 if made.stack.side.hindrances else 0
+
+
+def _content(made: Build) -> dict[str, Any]:
+    """The result as JSON names and units it."""
+    side, turn = made.stack.side, made.turn
+    clearances = {gap.pair: gap.distance for gap in side.gaps}
+    return {
+        "design": made.design.name,
+        "group": turn.moments.name,
+        "power_mean_W": turn.power_mean,
+        "material": made.material.name,
+        "clearance_min_m": clearances | {" - ".join(pair): None for pair in side.unknown},
+        "clearance_crank_angle_deg": {gap.pair: np.degrees(gap.crank_angle) for gap in side.gaps},
+        "hindrances": [gap.pair for gap in side.hindrances],
+        "layers": made.stack.layers,
+        "between_feet_m": made.stack.feet,
+        "width_m": {body: plate.width for body, plate in made.plates.items()},
+        "thickness_m": {body: plate.thickness for body, plate in made.plates.items()},
+        "mass_kg": made.mass,
+        "pin_diameter_m": made.pins,
+        "pin_force_max_N": {joint: made.loads.largest(joint) for joint in made.pins},
+    }
+
+
+def _print(made: Build) -> None:
+    loads, side = made.loads, made.stack.side
+    rows = [
+        (body, *(f"{1e3 * size:g}" for size in (plate.width, plate.thickness)), f"{made.mass[body]:.3f}",
+         f"{made.stack.layers[body]}")
+        for body, plate in made.plates.items()
+    ]  # fmt: skip
+    title = f"{heading(made.turn)}; {made.material.name}"
+    print_table(title, ("link", "width, mm", "thickness, mm", "mass, kg", "layer"), rows)
+    cases = (loads.riding, loads.pushed)
+    pins = [
+        (joint.replace("_", " "), f"{1e3 * diameter:.3g}", *(f"{np.abs(case[joint]).max():.0f}" for case in cases))
+        for joint, diameter in made.pins.items()
+    ]
+    print_table("Pins", ("joint", "diameter, mm", "riding, N", "pedal load, N"), pins)
+    gaps = [(gap.pair, f"{1e3 * gap.distance:.1f}", f"{np.degrees(gap.crank_angle):.0f}")
+            for gap in sorted(side.gaps, key=lambda gap: gap.distance)]  # fmt: skip
+    head = "Clearances over the turn; what overlaps passes beside each other"
+    print_table(head, ("pair", "least, mm", "at crank deg"), gaps)
+    if missing := dict.fromkeys(part for _, part in side.unknown):
+        say(f"not known, as the design file says nothing of them in [frame]: {', '.join(missing)}")
+    if side.hindrances:
+        meeting = ", ".join(f"{gap.pair} ({1e3 * gap.distance:.1f} mm)" for gap in side.hindrances)
+        conclude(False, "Cannot be built so", f": {meeting}.")
+    else:
+        conclude(True, "Can be built", f": feet {1e3 * made.stack.feet:.0f} mm apart.")

@@ -1,0 +1,35 @@
+"""Everything that is handed to a workshop, as the files of a folder."""
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from fes_mj.drawing.part import FIRST, draw_part, extent, notes
+from fes_mj.drawing.pen import Pen
+from fes_mj.drawing.sheet import LINE, pictures, sheet
+from fes_mj.drawing.tables import links_csv, pin_forces_csv
+from fes_mj.linkage.plates import Plate
+from fes_mj.statics.sizes import Build
+
+SHEET, TABLES = ("sheet.dxf", "sheet.svg", "sheet.pdf"), ("links.csv", "pin_forces.csv")
+
+
+def names(links: Iterable[str]) -> list[Path]:
+    """Files in the folder, of a design with these links."""
+    return [*(Path("links") / f"{link}.dxf" for link in links), *map(Path, (*SHEET, *TABLES))]
+
+
+def contents(build: Build) -> dict[Path, str | bytes]:
+    """Every file of the folder: its name -> what is in it."""
+    drawn = sheet(build)
+    parts: list[str | bytes] = [link_drawing(build, plate).dxf() for plate in build.plates.values()]
+    pages: list[str | bytes] = [drawn.dxf(), *pictures(drawn), links_csv(build), pin_forces_csv(build)]
+    return dict(zip(names(build.plates), [*parts, *pages], strict=True))
+
+
+def link_drawing(build: Build, plate: Plate) -> Pen:
+    """A link in full size, the notes below it."""
+    pen, low = Pen.new(), extent(plate).low
+    draw_part(pen, plate)
+    for number, line in enumerate(notes(build, plate, "1:1"), 1):
+        pen.text(line, low - 1j * (2 * FIRST + LINE * number))
+    return pen

@@ -1,0 +1,224 @@
+"""One sheet of a design: its mechanism in both extreme positions, every link with dimensions, tables, title block."""
+
+import io
+from collections.abc import Sequence
+from importlib.metadata import version
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from fes_mj.common.arrays import ComplexArray
+from fes_mj.common.text import printable
+from fes_mj.common.units import RPM
+from fes_mj.drawing.part import FIRST, draw_part, extent, notes
+from fes_mj.drawing.pen import TEXT, Pen, seen
+from fes_mj.linkage.clearance import CLEARANCE, Gap
+from fes_mj.linkage.design import BODIES
+from fes_mj.linkage.kinematics import FULL_TURN
+from fes_mj.linkage.plates import Plate
+from fes_mj.linkage.shapes import back_to_front
+from fes_mj.statics.materials import pin_stock
+from fes_mj.statics.sizes import Build
+
+WIDTH, HEIGHT, BORDER, BINDING = 594.0, 420.0, 10.0, 20.0  # mm: A2, ISO 5457
+SCALES = (1.0, 0.5, 0.2, 0.1, 0.05, 0.02)  # ISO 5455
+LINE = 1.8 * TEXT  # mm from a line of text to the next
+ROOM = FIRST + 6.0  # mm around a link for its dimensions
+_LINKS, _UNDER, _GAP = 336.0, 110.0, 5.0  # mm: where links begin from the left, how high tables reach, between boxes
+_TITLE, _NAMES, _ROW = 180.0, 24.0, 7.0  # mm: width of the title block (ISO 7200), of its names, height of a row
+_LISTED = 6  # clearances
+FIXED_POINTS = {"hip", "rocker_pivot", "crank_centre"}
+
+
+class Box(NamedTuple):
+    """A part of the sheet, mm."""
+
+    left: float
+    bottom: float
+    right: float
+    top: float
+
+    @property
+    def size(self) -> complex:
+        return complex(self.right - self.left, self.top - self.bottom)
+
+    @property
+    def middle(self) -> complex:
+        return complex(self.left + self.right, self.bottom + self.top) / 2
+
+
+def sheet(build: Build) -> Pen:
+    """The drawing, in full size of the paper."""
+    pen, right, top = Pen.new(), WIDTH - BORDER, HEIGHT - BORDER
+    corners = (complex(x, y) for x, y in ((BINDING, BORDER), (right, BORDER), (right, top), (BINDING, top)))
+    pen.line(list(corners), "FRAME", close=True)
+    side, left = build.stack.side, BINDING + _GAP
+    apart = sorted((gap for gap in side.gaps if gap.distance > 0), key=lambda gap: gap.distance)
+    gaps = list(dict.fromkeys([*side.hindrances, *apart]))[:_LISTED]
+    _mechanism(pen, build, gaps, Box(left, BORDER + _UNDER, _LINKS - _GAP, top - _GAP))
+    _links(pen, build, Box(_LINKS, BORDER + 7 * _ROW, right - _GAP, top - _GAP))
+    _lines(pen, _tables(build, gaps), complex(left, BORDER + _UNDER))
+    _title(pen, build)
+    return pen
+
+
+def ratio(scale: float) -> str:
+    """A scale as drawings name it."""
+    return f"1:{round(1 / scale)}"
+
+
+def _mechanism(pen: Pen, build: Build, gaps: Sequence[Gap], box: Box) -> None:
+    """Rider, links and frame with the leg bent most and stretched most, and the paths of pedal and knee."""
+    points = build.stack.side.motion.points
+    paths = {name: seen(points[name].value) for name in ("pedal", "knee")}
+    reach = np.abs(points["pedal"].value)
+    bent, stretched = int(reach.argmin()), int(reach.argmax())
+    lines = [*_pose(build, stretched, "PHANTOM"), *_pose(build, bent, "OUTLINE")]
+    cloud = np.concatenate([*paths.values(), *(line for line, _ in lines)])
+    low, high = complex(cloud.real.min(), cloud.imag.min()), complex(cloud.real.max(), cloud.imag.max())
+    scale = _largest_scale(high - low, box.size - 2j * LINE)
+    own = pen.moved(box.middle - 1j * LINE - scale * (low + high) / 2, scale)
+    for line, layer in lines:
+        own.line(line, layer, close=True)
+    for path in paths.values():
+        own.line(path, "PATH", close=True)
+    for joint in FIXED_POINTS & points.keys():
+        own.cross(seen(complex(points[joint].value)), 4.0)
+    for number, gap in enumerate(gaps, 1):
+        start, end = map(seen, gap.ends)
+        own.line([start, end], "DIMENSIONS")
+        own.text(str(number), start + (end - start) * number / (1 + len(gaps)) + (1 + 1j) / scale)
+    angles = [f"{np.degrees(FULL_TURN[place]):.1f} deg" for place in (bent, stretched)]
+    pen.text(
+        f"MECHANISM {ratio(scale)}, seen from the rider's right; links thick with the leg bent most (crank at "
+        f"{angles[0]}), thin stretched most ({angles[1]})",
+        complex(box.left, box.top - LINE),
+    )
+    pen.text("broken lines: paths of pedal and knee; numbers: clearances", complex(box.left, box.top - 2 * LINE))
+
+
+def _largest_scale(size: complex, room: complex) -> float:
+    """With which something of this width and height fits, mm."""
+    return next(scale for scale in SCALES if scale * size.real <= room.real and scale * size.imag <= room.imag)
+
+
+def _pose(build: Build, place: int, layer: str) -> list[tuple[ComplexArray, str]]:
+    """Outlines at a place of the turn: leg and seat thin, links in the layer."""
+    motion, lines = build.stack.side.motion, []
+    for bar in back_to_front(build.design):
+        if bar.body in build.plates or bar.part == "frame":
+            continue
+        origin, direction = 0j, 1.0 + 0j
+        if bar.body:
+            origin = complex(np.broadcast_to(motion.points[BODIES[bar.body][0]].value, FULL_TURN.shape)[place])
+            direction = complex(motion.direction(bar.body)[place])
+        lines.append((seen(bar.outline(origin, direction)), "PHANTOM"))
+    for body, plate in build.plates.items():
+        origin = complex(np.broadcast_to(motion.points[BODIES[body][0]].value, FULL_TURN.shape)[place])
+        lines.append((seen(origin + complex(motion.direction(body)[place]) * rounded(plate)), layer))
+    return lines
+
+
+def rounded(plate: Plate) -> ComplexArray:
+    """Points along a plate's outline in its body's frame, m."""
+    arcs = [
+        corner.centre + plate.margin * corner.before * np.exp(1j * np.linspace(0, corner.angle, 24))
+        for corner in plate.corners
+    ]
+    return np.concatenate(arcs)
+
+
+def _links(pen: Pen, build: Build, box: Box) -> None:
+    """Every link below the one before, with its notes, each as large as its share of the room lets it be."""
+    top, share = box.top, 1j * box.size.imag / len(build.plates)
+    for plate in build.plates.values():
+        low, high = extent(plate)
+        room = box.size.real + share - 2 * ROOM * (1 + 1j) - 1j * LINE * (1 + len(plate.holes))
+        scale = _largest_scale(high - low, room)
+        below = _lines(pen, notes(build, plate, ratio(scale)), complex(box.left, top))
+        corner = complex(box.left + ROOM, below - ROOM - scale * (high - low).imag)
+        draw_part(pen.moved(corner - scale * low, scale), plate)
+        top -= share.imag
+
+
+def _lines(pen: Pen, lines: Sequence[str], at: complex) -> float:
+    """Lines of text below each other; how far down they reach, mm."""
+    for number, line in enumerate(lines, 1):
+        if line:
+            pen.text(line, at - 1j * LINE * number)
+    return at.imag - LINE * len(lines)
+
+
+def _tables(build: Build, gaps: Sequence[Gap]) -> list[str]:
+    """Clearances, how the layers lie, where the pivots are."""
+    stack, points = build.stack, build.stack.side.motion.points
+    layers = sorted(stack.layers, key=lambda body: stack.layers[body])
+    pivots = {name: 1e3 * complex(points[name].value) for name in FIXED_POINTS & points.keys() - {"hip"}}
+    return [
+        f"CLEARANCES, seen from the side, over the whole turn of both legs, mm (wanted: {1e3 * CLEARANCE:g})",
+        *(
+            f"{number}  {gap.pair}: {1e3 * gap.distance:.1f} at crank angle {np.degrees(gap.crank_angle):.0f} deg"
+            for number, gap in enumerate(gaps, 1)
+        ),
+        f"beside each other: {', '.join(gap.pair for gap in stack.side.gaps if gap.distance <= 0) or 'nothing'}",
+        "",
+        "LAYERS, from the tricycle's middle to the middle of each plate, mm",
+        *(f"{stack.layers[body]}  {body}: {1e3 * stack.level(body):.1f}" for body in layers),
+        f"leg: {1e3 * stack.level('shank'):.1f}, between the middles of the feet {1e3 * stack.feet:.0f}",
+        "",
+        "ON THE FRAME, from the hip, mm forwards and up",
+        *(f"{name.replace('_', ' ')}: {-place.real:.1f}, {place.imag:.1f}" for name, place in sorted(pivots.items())),
+    ]
+
+
+def _title(pen: Pen, build: Build) -> None:
+    """The title block, bottom right; without a date."""
+    turn, rider, architecture = build.turn, build.design.rider, build.design.linkage.architecture
+    rows = {
+        "design": printable(build.design.name),
+        "kind": architecture.title,
+        "power": f"{turn.power_mean:.2f} W in the mean, one leg ({turn.moments.name}), {turn.cadence / RPM:.1f} rpm",
+        "rider": f"thigh {1e3 * rider.thigh:g} mm, shank {1e3 * rider.shank:g} mm, {rider.mass:g} kg",
+        "material": f"{build.material.name}, links {sum(build.mass.values()):.2f} kg a side; pins {pin_stock().name}",
+        "scales": "as stated; dimensions in mm; tolerances without indication ISO 2768-m",
+        "made by": f"fes_mj {version('fes-mj')}; A2",
+    }
+    left, right, top = WIDTH - BORDER - _TITLE, WIDTH - BORDER, BORDER + _ROW * len(rows)
+    pen.line([complex(left, BORDER), complex(left, top), complex(right, top), complex(right, BORDER)], "FRAME")
+    pen.line([complex(left + _NAMES, BORDER), complex(left + _NAMES, top)], "TEXT")
+    for number, (name, text) in enumerate(rows.items(), 1):
+        below = top - number * _ROW
+        pen.line([complex(left, below), complex(right, below)], "TEXT")
+        pen.text(name, complex(left + 2, below + 2))
+        pen.text(text, complex(left + _NAMES + 2, below + 2), height=TEXT if number > 1 else 1.6 * TEXT)
+
+
+def figure(pen: Pen) -> Any:
+    """The sheet as a matplotlib figure."""
+    from ezdxf.addons.drawing.config import BackgroundPolicy, ColorPolicy, Configuration
+    from ezdxf.addons.drawing.frontend import Frontend
+    from ezdxf.addons.drawing.matplotlib import MatplotlibBackend
+    from ezdxf.addons.drawing.properties import RenderContext
+    from matplotlib.figure import Figure
+
+    drawn = Figure(figsize=(WIDTH / 25.4, HEIGHT / 25.4))
+    axes = drawn.add_axes((0, 0, 1, 1))
+    look = Configuration(background_policy=BackgroundPolicy.WHITE, color_policy=ColorPolicy.BLACK)
+    backend = MatplotlibBackend(axes, adjust_figure=False)
+    Frontend(RenderContext(pen.document), backend, look).draw_layout(pen.document.modelspace())
+    axes.set(xlim=(0, WIDTH), ylim=(0, HEIGHT))
+    return drawn
+
+
+def pictures(pen: Pen) -> list[bytes]:
+    """The sheet as SVG and as PDF; without a date, so that the same sheet gives the same bytes."""
+    import matplotlib as mpl
+
+    files = []
+    with mpl.rc_context({"svg.hashsalt": "fes_mj"}):
+        drawn = figure(pen)
+        for suffix, dated in (("svg", "Date"), ("pdf", "CreationDate")):
+            stream = io.BytesIO()
+            drawn.savefig(stream, format=suffix, metadata={dated: None})
+            files.append(stream.getvalue())
+    return files
