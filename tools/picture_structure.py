@@ -15,7 +15,7 @@ WIDTH, FLOOR, BOX, GAP = 860, 62, 42, 12  # px
 HANDED_UP = {
     "linkage": "Design, Motion, masses",
     "moments": "JointMoments, TorqueMap",
-    "muscles": "Riders, Pull",
+    "muscles": "Riders, MuscleTurn",
     "statics": "QuasiStatic, Cycles",
     "riding": "Ride, Fit, error budget",
     "simulation": "MjSpec, Simulation",

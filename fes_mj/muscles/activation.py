@@ -1,12 +1,13 @@
 """What a muscle makes of its stimulation: first order, with a rise and a slower fall, over a turn that repeats."""
 
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
 from fes_mj.common.arrays import FloatArray
 
-_CLOSED = 1e-10  # of an activation, by which a turn may end beside where it began
+_CLOSED = 1e-7  # of an activation, by which a turn may end beside where it began
 
 
 def trapezium(since_on: Any, width: Any, ramp: Any) -> FloatArray:
@@ -21,33 +22,31 @@ def trapezium(since_on: Any, width: Any, ramp: Any) -> FloatArray:
 def answer(stimulation: FloatArray, turn: Any, rise: Any, fall: Any) -> FloatArray:
     """Activation over a turn under a stimulation that repeats, both over uniform crank angles, the last axis.
 
-    Exact for a stimulation that is linear between the angles: over each step activation goes to it with the time
-    constant `rise` where the step's middle is above, else `fall`. turn, rise, fall: s, of the stimulation's shape but
-    for the last axis.
+    Activation goes to the stimulation with the time constant `rise` from below and `fall`, which is not shorter, from
+    above: always as the constant says that leaves it the higher. Exact over each step for a stimulation that is linear
+    between the angles, but for the one in which they cross. turn, rise, fall: s, of the stimulation's shape but for the
+    last axis.
     """
-    points = stimulation.shape[-1]
-    here = np.moveaxis(stimulation, -1, 0)
-    there = np.roll(here, -1, axis=0)
-    middle = (here + there) / 2
-    steps = [_step(np.asarray(turn) / points, np.asarray(constant)) for constant in (rise, fall)]
-    kept = [step[0] for step in steps]
-    added = [step[1] * here + step[2] * there for step in steps]
-    result = np.empty_like(middle)
-    activation = np.zeros(middle.shape[1:])
+    here = np.ascontiguousarray(np.moveaxis(np.atleast_2d(stimulation), -1, 0))
+    there = np.concatenate([here[1:], here[:1]])
+    (kept, added), (also_kept, also_added) = (
+        _steps(here, there, np.asarray(turn) / len(here), np.asarray(constant)) for constant in (rise, fall)
+    )
+    result, higher = np.zeros((len(here) + 1, *here.shape[1:])), np.empty(here.shape[1:])
     while True:
-        start = activation
-        for point in range(points):
-            result[point] = activation
-            upwards = middle[point] > activation
-            activation = np.where(
-                upwards, kept[0] * activation + added[0][point], kept[1] * activation + added[1][point]
-            )
-        if np.max(np.abs(activation - start), initial=0.0) < _CLOSED:
-            return np.moveaxis(result, 0, -1)
+        for point, (now, then) in enumerate(pairwise(result)):
+            np.multiply(now, kept, out=higher)
+            higher += added[point]
+            np.multiply(now, also_kept, out=then)
+            then += also_added[point]
+            np.maximum(then, higher, out=then)
+        if np.max(np.abs(result[-1] - result[0]), initial=0.0) < _CLOSED:
+            return np.ascontiguousarray(np.moveaxis(result[:-1], 0, -1)).reshape(stimulation.shape)
+        result[0] = result[-1]
 
 
-def _step(seconds: Any, constant: Any) -> tuple[Any, Any, Any]:
-    """Of da/dt = (u - a) / constant over a step with linear u: what is kept of a, and the weights of u at its ends."""
+def _steps(here: FloatArray, there: FloatArray, seconds: Any, constant: Any) -> tuple[FloatArray, FloatArray]:
+    """Of da/dt = (u - a) / constant over steps of this length with linear u: what is kept of a, and what is added."""
     kept = np.exp(-seconds / constant)
     part = (1 - kept) * constant / seconds
-    return kept, part - kept, 1 - part
+    return kept, here * (part - kept) + there * (1 - part)

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cache
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -40,9 +41,10 @@ class Anatomy:
     knee_deg: tuple[float, float]
 
     @property
-    def first_of_group(self) -> IntArray:
-        """Number of the first muscle of each group; the others of it follow."""
-        return np.searchsorted(self.group, np.arange(len(GROUPS)))
+    def of_group(self) -> list[slice]:
+        """The muscles of each group."""
+        ends = np.searchsorted(self.group, np.arange(len(GROUPS) + 1))
+        return [slice(*pair) for pair in pairwise(ends)]
 
     @property
     def rectus(self) -> BoolArray:

@@ -24,10 +24,8 @@ def force_length(fibre: Any) -> Any:
 
 def force_velocity(shortening: Any) -> Any:
     """Force per isometric force at these shortening speeds, in largest speeds; none from 1 on, PLATEAU below -1."""
-    speed = np.clip(shortening, -1.0, 1.0)
-    positive = np.maximum(speed, 0)
-    negative = speed - positive
-    # each branch is 1 where the other counts
+    positive, negative = np.clip(shortening, 0.0, 1.0), np.clip(shortening, -1.0, 0.0)
+    # each branch is as at rest where the other counts
     shorter = (1 - positive) / (1 + positive / CURVATURE)
     return shorter + (PLATEAU - 1) * (1 - (1 + negative) / (1 - _LENGTHENING * negative))
 

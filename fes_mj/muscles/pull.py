@@ -11,7 +11,7 @@ from fes_mj.linkage.joints import PerJoint
 from fes_mj.linkage.kinematics import Motion
 from fes_mj.muscles.anatomy import Anatomy, anatomy
 from fes_mj.muscles.contraction import tension
-from fes_mj.muscles.geometry import Flexion
+from fes_mj.muscles.geometry import Flexion, Values
 from fes_mj.muscles.riders import Riders
 
 
@@ -19,14 +19,15 @@ from fes_mj.muscles.riders import Riders
 class Pull:
     """Fully activated muscles of every member along the motion of every design.
 
-    Shape (muscles, members, designs, angles): force, N; speed, m/s, at which a muscle grows longer; by_knee, by_hip, m,
-    the change of its length per flexion, which is its moment arm, positive in extension.
+    Shape (muscles, members, designs, angles): force, N; lengths, m, and speed, m/s, at which they grow, of muscles as
+    large as the anatomy's. scale: by which the rider's are larger, shape (muscles, 1, designs, 1).
     """
 
     anatomy: Anatomy
     force: FloatArray
+    lengths: Values
     speed: FloatArray
-    arm: PerJoint[FloatArray]
+    scale: FloatArray
 
     @cached_property
     def power(self) -> FloatArray:
@@ -35,12 +36,17 @@ class Pull:
 
     @cached_property
     def moment(self) -> PerJoint[FloatArray]:
-        """Joint moment per activation of each group, N m, positive in extension, of the shape of `power`."""
-        return self.arm.map(lambda arm: self.of_groups(self.force * arm))
+        """Joint moment per activation of each group, N m, positive in extension, of the shape of `power`.
+
+        A muscle's moment arm is the change of its length with flexion.
+        """
+        arms = PerJoint(self.lengths.by_knee, self.lengths.by_hip)
+        return arms.map(lambda arm: self.of_groups(self.force * arm))
 
     def of_groups(self, values: FloatArray) -> FloatArray:
-        """Sums over the muscles of each group."""
-        return np.asarray(np.add.reduceat(values, self.anatomy.first_of_group, axis=0))
+        """Sums over the muscles of each group, each as much longer as the rider's is."""
+        longer = self.scale * values
+        return np.stack([longer[muscles].sum(axis=0) for muscles in self.anatomy.of_group])
 
 
 def pull(riders: Riders, motion: Motion, cadence: Any, muscles: Anatomy | None = None) -> Pull:
@@ -53,7 +59,6 @@ def pull(riders: Riders, motion: Motion, cadence: Any, muscles: Anatomy | None =
     lengths = muscles.lengths.at(Flexion.along(motion, np.radians(riders["hip_offset_deg"])))
     rate = motion.joint_rate.map(lambda rate: -cadence * np.atleast_2d(rate))  # of flexion
     speed = lengths.by_hip * rate.hip + lengths.by_knee * rate.knee
-    scale = muscles.length_scale(motion.design.rider)[:, None]
     # length, fibre and tendon grow alike with the rider, so that relative lengths and speeds are those of the anatomy
     relative, _ = tension(
         lengths.value,
@@ -63,5 +68,5 @@ def pull(riders: Riders, motion: Motion, cadence: Any, muscles: Anatomy | None =
         muscles.pennation[column],
         riders["max_speed"],
     )
-    force = riders.strength(muscles) * muscles.force[column] * relative
-    return Pull(muscles, force, scale * speed, PerJoint(scale * lengths.by_knee, scale * lengths.by_hip))
+    force = relative * (riders.strength(muscles) * muscles.force[column])
+    return Pull(muscles, force, lengths, speed, muscles.length_scale(motion.design.rider)[:, None])

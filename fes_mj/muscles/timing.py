@@ -1,0 +1,79 @@
+"""When muscles are stimulated: the best windows of a stimulator, for a rider of whom only an ensemble is known.
+
+A window has an on-angle and a width on a grid of 5 deg, and the stimulator's ramp at both ends. Power is linear in each
+group's activation, and the activation by a window shifts with it; so the power of every window is a correlation.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from fes_mj.common.arrays import FloatArray
+from fes_mj.muscles.activation import answer, trapezium
+from fes_mj.muscles.prior import ramp
+from fes_mj.muscles.riders import Riders
+
+POINTS = 360  # crank angles of a turn
+ANGLES = np.arange(POINTS) * (2 * np.pi / POINTS)
+STEP = 5  # deg, of on-angles and widths
+DUTY = 100 / 360  # largest share of the turn in which a group is stimulated
+LEAST_SHARE = 0.02  # of the expected power of all groups; for less a group is not worth its stimulation
+_STARTS = POINTS // STEP
+
+
+@dataclass(frozen=True, eq=False)
+class Windows:
+    """On-angle and width, deg of crank, of the stimulation of each group, 0 wide where there is none.
+
+    Shape (groups, members or 1, designs or 1): common to all members, or each its own.
+    """
+
+    on: FloatArray
+    width: FloatArray
+
+    def at(self, crank_angle: FloatArray, ramp_angle: Any) -> FloatArray:
+        """Stimulation in [0, 1] at crank angles of shape (members, designs, angles); the ramp in rad, (designs, 1)."""
+        on, width = (np.radians(values)[..., None] for values in (self.on, self.width))
+        return trapezium(crank_angle - on, width, ramp_angle)
+
+    def shifted(self, degrees: float) -> "Windows":
+        """The same later in the turn."""
+        return Windows((self.on + degrees) % 360, self.width)
+
+
+def activation(windows: Windows, riders: Riders, cadence: Any) -> FloatArray:
+    """Of each group over ANGLES, shape (groups, members, designs, angles); cadence: rad/s, scalar or (designs, 1)."""
+    cadence = np.reshape(cadence, (-1, 1))
+    return responded(windows.at(ANGLES - cadence * riders["delay_s"], cadence * ramp()), riders, cadence)
+
+
+def responded(stimulation: FloatArray, riders: Riders, cadence: FloatArray) -> FloatArray:
+    """What muscles make of a stimulation, already delayed, shape (..., members, designs, angles)."""
+    times = (2 * np.pi / cadence[:, 0], riders["rise_s"][..., 0], riders.fall[..., 0])
+    return answer(stimulation, *times)
+
+
+def best_windows(
+    power: FloatArray, riders: Riders, cadence: Any, duty: float = DUTY, each_its_own: bool = False
+) -> Windows:
+    """The windows, none wider than a share `duty` of the turn, with the largest power in expectation over the riders.
+
+    power: W per activation, shape (groups, members, designs, angles), over ANGLES; cadence: as for `activation`.
+    each_its_own: the best ones of every member instead, for one who has been measured completely.
+    """
+    widths = np.arange(STEP, np.floor(360 * duty / STEP + 1e-9) * STEP + 1, STEP)
+    answers = activation(Windows(np.zeros((len(widths), 1, 1)), widths[:, None, None]), riders, cadence)
+    # harmonics beyond half the number of starts have less than 1e-6 of the power, as both curves are continuous
+    spectra = [np.fft.rfft(values)[..., : _STARTS // 2] for values in (answers, power)]
+    members = "m" if each_its_own else ""
+    together = np.einsum(f"wmdk,gmdk->g{members}dwk", np.conj(spectra[0]), spectra[1], optimize=True)
+    if not each_its_own:
+        together = together[:, None] / power.shape[1]
+    # (groups, members, designs, widths, starts); the inverse divides by the number of starts
+    expected = np.fft.irfft(together, _STARTS) * (_STARTS / POINTS**2)
+    flat = expected.reshape(*expected.shape[:-2], -1)
+    best, largest = flat.argmax(axis=-1), flat.max(axis=-1)
+    worth = largest > LEAST_SHARE * np.maximum(largest, 0).sum(axis=0)
+    width, start = np.unravel_index(best, expected.shape[-2:])
+    return Windows(np.where(worth, STEP * start, 0.0), np.where(worth, widths[width], 0.0))
