@@ -37,7 +37,8 @@ def trial(measured_on: ReferenceTricycle, turns: float, noise: float, seed: int 
     pose = kinematics.solve(measured_on.design, angle + measured_on.top_dead_centre).joint_angle
     turn = np.floor(angle / (2 * np.pi)).astype(int)
     moment = invented(angle).map(lambda m: m + _deviation(random, angle, turn, noise))
-    knee, hip = np.degrees(pose.knee) - 180, 90 - np.degrees(pose.hip)  # OpenSim: straight is 0, hip flexion positive
+    # As gait2392 counts them: 0 for the straight leg in line with the trunk, knee extension and hip flexion positive.
+    knee, hip = np.degrees(pose.knee) - 180, 180 - np.degrees(pose.hip)
     motion = _opensim("Coordinates", "yes", {"time": time, "knee_angle_r": knee, "hip_flexion_r": hip})
     dynamics = {"time": time, "knee_angle_r_moment": moment.knee, "hip_flexion_r_moment": -moment.hip}
     return motion, _opensim("Inverse Dynamics Generalized Forces", "no", dynamics)

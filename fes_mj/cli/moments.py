@@ -6,7 +6,7 @@ import numpy as np
 
 from fes_mj.cli.options import Out, PrintOptions, warn_of
 from fes_mj.cli.tables import span, with_error
-from fes_mj.common.console import print_table
+from fes_mj.common.console import print_table, verdict
 from fes_mj.common.errors import require_extra
 from fes_mj.common.units import RPM
 from fes_mj.common.writing import PICTURES, require_writable, write_text
@@ -51,7 +51,9 @@ def moments(
 
 def _print(measurement: Measurement) -> None:
     content, own = measurement.summary(), measurement.moments
-    counted = f"{content['turns']} turn{'s' * (content['turns'] > 1)}, {content['samples']} samples"
+    counted = ", ".join(
+        f"{content[what]} {what[:-1]}{'s' * (content[what] > 1)}" for what in ("riders", "trials", "turns", "samples")
+    )
     rows = [
         ("knee moment, N m (extension positive)", span(content["knee_Nm"])),
         ("hip moment, N m (extension positive)", span(content["hip_Nm"])),
@@ -65,6 +67,12 @@ def _print(measurement: Measurement) -> None:
         ("work per turn there, J", f"{content['work_per_turn_J']:.3f}"),
     ]
     print_table(f"{own.name}, measured on {_tricycle(own)}", ("", "understood"), rows)
+    if measurement.comparisons:
+        compared = [
+            (row.quantity, row.recorded, row.declared, verdict(row.agrees, "contradicts"))
+            for row in measurement.comparisons
+        ]
+        print_table("Is it plausible?", ("", "recorded", "declared or expected", ""), compared)
 
 
 def _tricycle(own: JointMoments) -> str:

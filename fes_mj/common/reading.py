@@ -1,6 +1,5 @@
 """All reading of files, with one wording for every refusal."""
 
-import csv
 import json
 import math
 import tomllib
@@ -9,17 +8,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NoReturn
 
-import numpy as np
-
-from fes_mj.common.arrays import FloatArray
 from fes_mj.common.errors import InputError
 
 DATA = Path(__file__).parents[1] / "data"  # what the package ships
 LARGEST_INPUT = 64 * 2**20  # bytes; a day of measured moments is smaller
 
 
-def read_text(path: Path, what: str) -> str:
-    """The text of a UTF-8 file, with or without a byte order mark. Raises InputError naming the file and the reason."""
+def read_bytes(path: Path, what: str) -> bytes:
+    """The content of a file. Raises InputError naming the file and the reason."""
     try:
         with path.open("rb") as file:
             data = file.read(LARGEST_INPUT + 1)
@@ -29,8 +25,13 @@ def read_text(path: Path, what: str) -> str:
         raise InputError(f"{str(path)!r}: cannot read the {what}: no file can have this name") from None
     if len(data) > LARGEST_INPUT:
         raise InputError(f"{path}: cannot read the {what}: it is larger than {LARGEST_INPUT >> 20} MiB")
+    return data
+
+
+def read_text(path: Path, what: str) -> str:
+    """The text of a UTF-8 file, with or without a byte order mark. Raises InputError naming the file and the reason."""
     try:
-        return data.decode("utf-8-sig")
+        return read_bytes(path, what).decode("utf-8-sig")
     except UnicodeDecodeError:
         raise InputError(f"{path}: the {what} is not UTF-8 text") from None
 
@@ -151,68 +152,3 @@ def read_json(path: Path, what: str) -> dict[str, Any]:
     if not isinstance(content, dict):
         raise InputError(f"{path}: the {what} must be a JSON object")
     return content
-
-
-@dataclass(frozen=True)
-class TextTable:
-    """A text table, whose cells are read column by column.
-
-    preamble: the text above the header, which is line `start`. lines: number of each row's line. rows: their cells.
-    """
-
-    path: Path
-    preamble: str
-    start: int
-    header: list[str]
-    lines: list[int]
-    rows: list[list[str]]
-
-    def column(self, name: str) -> FloatArray:
-        """The finite numbers of a column, shape (rows,). Raises InputError naming file, line, column and value."""
-        if name not in self.header:
-            known = ", ".join(self.header) or "nothing"
-            raise InputError(f"{self.path}: line {self.start}: there is no column {name!r}; the header names {known}")
-        if self.header.count(name) > 1:
-            raise InputError(f"{self.path}: line {self.start}: the header names the column {name!r} twice")
-        place = self.header.index(name)
-        cells = zip(self.lines, self.rows, strict=True)
-        return np.array([_cell(self.path, line, name, row[place]) for line, row in cells], float)
-
-
-def read_table(path: Path, what: str, *, after: str = "", commas: bool = True) -> TextTable:
-    """A table with a header line; blank lines are passed over.
-
-    after: the line above the header, if that is not the file's first. commas: between the columns, or blanks and tabs.
-    Raises InputError naming file and line.
-    """
-    text = read_text(path, what).splitlines()
-    start = next((number for number, line in enumerate(text, 1) if line.strip().lower() == after), 0) if after else 0
-    if after and not start:
-        raise InputError(f"{path}: the {what} has no line {after!r}, below which the columns begin")
-
-    def cells(line: str) -> list[str]:
-        row = next(csv.reader([line])) if commas else line.split()
-        return [cell.strip() for cell in row] if line.strip() else []
-
-    while start < len(text) and not text[start].strip():
-        start += 1
-    header = cells(text[start]) if start < len(text) else []
-    lines, rows = [], []
-    for number, line in enumerate(text[start + 1 :], start + 2):
-        row = cells(line)
-        if row and len(row) != len(header):
-            raise InputError(f"{path}: line {number} has {len(row)} values; the header names {len(header)} columns")
-        if row:
-            lines.append(number)
-            rows.append(row)
-    return TextTable(path, "\n".join(text[:start]), start + 1, header, lines, rows)
-
-
-def _cell(path: Path, line: int, column: str, cell: str) -> float:
-    try:
-        value = float(cell)
-    except ValueError:
-        value = math.nan
-    if not math.isfinite(value):
-        raise InputError(f"{path}: line {line}: {column} is {cell.strip()!r}; it must be a finite number")
-    return value

@@ -13,25 +13,60 @@ from fes_mj.common.reading import DATA
 from fes_mj.common.text import printable
 from fes_mj.common.units import RPM, turns_per_second
 from fes_mj.common.writing import csv_text
-from fes_mj.linkage import kinematics
-from fes_mj.moments.fourier import fit, fourier
-from fes_mj.moments.joint_moments import COLUMNS, GROUPS, MEASURED_POINTS, JointMoments, Misreading
-from fes_mj.moments.measured_turns import largest_gap, measured_turns, odd_angles, odd_moments
+from fes_mj.linkage.joints import PerJoint
+from fes_mj.linkage.variables import VARIABLES
+from fes_mj.moments.averaging import (
+    coefficients,
+    declared_power_sd,
+    mean_of,
+    weights_on,
+    with_power_sd,
+    without_spikes,
+)
+from fes_mj.moments.conventions import Convention
+from fes_mj.moments.fourier import fourier
+from fes_mj.moments.joint_moments import COLUMNS, GROUPS, JointMoments
+from fes_mj.moments.measured_turns import (
+    LARGEST_ANGLE,
+    LARGEST_MOMENT,
+    WHAT,
+    Recording,
+    bounded,
+    measured_turns,
+)
 from fes_mj.moments.measurement_file import Description
+from fes_mj.moments.plausibility import (
+    Comparison,
+    cadence_agrees,
+    comparisons,
+    largest_gap,
+    recorded_cadence,
+)
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE, ReferenceTricycle
-from fes_mj.moments.trial import WHAT, Turn, bounded, load_table
-from fes_mj.moments.uncertainty import power_weights, standard_deviation
+from fes_mj.moments.tables import load_table
+from fes_mj.moments.trial import in_order
+from fes_mj.moments.turn import Turn
+from fes_mj.moments.uncertainty import standard_deviation
 
 _FOLDER = DATA / "moments"
 DEGREES = np.arange(360.0)  # crank angles of a rider group's curves, from top dead centre
 
 
+_PLAIN = Convention(PerJoint(1.0, 1.0), PerJoint(1.0, 1.0))  # what the header of a plain file means
+
+
 @dataclass(frozen=True, eq=False)
 class Measurement:
-    """What a file of moments holds: each turn as it was measured, and the moments that are made of them."""
+    """What a file of moments holds: each turn as it was measured, and the moments that are made of them.
+
+    comparisons: what the file says of itself beside what is declared. declared_sd: what the errors of tape measure and
+    cadence have in power_sd, W.
+    """
 
     turns: tuple[Turn, ...]
     moments: JointMoments
+    comparisons: tuple[Comparison, ...] = ()
+    declared_sd: float | None = None
 
     @classmethod
     def of(cls, moments: JointMoments) -> "Measurement":
@@ -41,11 +76,8 @@ class Measurement:
     @property
     def power_sd(self) -> float | None:
         """Standard deviation of the mean power in the tricycle of the measurement, W; None for a single turn."""
-        reference, covariance = self.moments.measured_on, self.moments.covariance
-        if covariance is None:
-            return None
-        motion = kinematics.solve(reference.design, np.linspace(0, 2 * np.pi, MEASURED_POINTS, endpoint=False))
-        return standard_deviation(power_weights(motion, reference.cadence, reference), covariance)
+        covariance = self.moments.covariance
+        return None if covariance is None else standard_deviation(weights_on(self.moments.measured_on), covariance)
 
     def summary(self) -> dict[str, Any]:
         """What is understood of the file, as JSON names and units it."""
@@ -55,13 +87,17 @@ class Measurement:
             "knee_Nm": [curves.knee.min(), curves.knee.max()],
             "hip_Nm": [curves.hip.min(), curves.hip.max()],
             "turns": len(self.turns),
+            "trials": len({turn.source for turn in self.turns}),
+            "riders": len({turn.source[0] for turn in self.turns}),
             "samples": sum(len(turn.knee) for turn in self.turns),
             "largest_gap_deg": math.degrees(largest_gap(self.turns)),
             "power_mean_W": sum(moments.power_mean),
             "power_sd_W": self.power_sd,
+            "power_declared_sd_W": self.declared_sd,
             "work_per_turn_J": sum(moments.power_mean) / turns_per_second(cadence),
             "cadence_rpm": cadence / RPM,
             "warnings": [misreading._asdict() for misreading in moments.misreadings],
+            "plausibility": [comparison._asdict() for comparison in self.comparisons],
         }
 
 
@@ -78,7 +114,8 @@ def load_moments(source: str | Path = "p1p2", left: str | Path | None = None) ->
     if source in GROUPS:
         path = _FOLDER / f"{source}.csv"
         with np.load(path.with_suffix(".npz")) as stored:
-            return JointMoments(path.stem, *_plain_turn(path), covariance=stored["covariance"])
+            (turn,) = _plain_turns(path)
+            return JointMoments(path.stem, turn.crank_angle, turn.knee, turn.hip, covariance=stored["covariance"])
     return load_measurement(Path(source)).moments
 
 
@@ -86,21 +123,25 @@ def load_measurement(path: Path) -> Measurement:
     """Read a CSV with the header COLUMNS, crank angle from top dead centre, or a measurement file (.toml)."""
     if path.suffix.lower() == ".toml":
         description = Description.read(path)
-        return _measurement(path, *measured_turns(description), description.measured_on, description.cadence_known)
-    turn = _plain_turn(path)
-    return _measurement(path, [turn], odd_angles(np.degrees(turn.crank_angle), "deg"), PAPER_TRICYCLE, False)
+        recording, said = measured_turns(description), description.convention
+        return _measurement(path, recording, said, description.measured_on, description.cadence_known)
+    turns = _plain_turns(path)
+    degrees = np.concatenate([np.degrees(turn.crank_angle) for turn in turns])
+    return _measurement(path, Recording(turns, degrees), _PLAIN, PAPER_TRICYCLE, False)
 
 
-def _plain_turn(path: Path) -> Turn:
-    """The turn of a plain file."""
+def _plain_turns(path: Path) -> list[Turn]:
+    """The turns of a plain file."""
     table = load_table(path, WHAT)
     if table.header != [*COLUMNS]:
         raise InputError(
             f"{path}: the header is {','.join(table.header)!r}; of a plain file it must be {','.join(COLUMNS)!r}; "
             "other columns, units and zeros are described in a measurement file (.toml)"
         )
-    angle, *moments = (bounded(table, column, column == COLUMNS[0]) for column in COLUMNS)
-    return Turn(np.radians(angle), *moments)
+    limits = (LARGEST_ANGLE, LARGEST_MOMENT, LARGEST_MOMENT)
+    angle, knee, hip = (bounded(table, column, limit) for column, limit in zip(COLUMNS, limits, strict=True))
+    angle = np.radians(angle)
+    return [Turn(angle[row], knee[row], hip[row]) for row in in_order(angle)]
 
 
 def measured_files(path: Path) -> list[Path]:
@@ -114,24 +155,46 @@ def moments_csv(moments: JointMoments) -> str:
 
 
 def _measurement(
-    path: Path, turns: list[Turn], odd: list[Misreading], measured_on: ReferenceTricycle, cadence_known: bool
+    path: Path, recording: Recording, said: Convention, declared: ReferenceTricycle, cadence_said: bool
 ) -> Measurement:
-    """Moments of one turn as they are; of several their mean, with the covariance of that mean by their scatter."""
-    for turn in turns:
+    """Moments of one turn as they are; of several their mean, with the covariance of that mean."""
+    for turn in recording.turns:
         if len(np.unique(np.mod(turn.crank_angle, 2 * np.pi))) < 2:
             count = f"{len(turn.knee)} row{'s' * (len(turn.knee) > 1)} of moments"
             raise InputError(f"{path}: {count} at one crank angle; at least 2 crank angles are needed")
-    mean, covariance = turns[0], None
+    cleaned = [without_spikes(turn) for turn in recording.turns]
+    turns, spikes = [turn for turn, _ in cleaned], sum(count for _, count in cleaned)
+    cadence = recorded_cadence(turns)
+    measured_on = declared
+    if cadence is not None and not (cadence_said and cadence_agrees(turns, declared.cadence)):
+        measured_on = _at_cadence(path, declared, cadence)
+    declared_sd = None
+    name, known = printable(path.stem), cadence_said or cadence is not None
     if len(turns) > 1:
-        from scipy.special import ndtr, stdtrit
+        rows = np.stack([coefficients(turn) for turn in turns])
+        weights = weights_on(measured_on)
+        mean, covariance = mean_of(rows, [turn.source for turn in turns], weights)
+        declared_sd = declared_power_sd(mean, measured_on, cadence is not None)
+        covariance = with_power_sd(covariance, weights, declared_sd)
+        moments = replace(moments_of(mean, name), covariance=covariance, measured_on=measured_on, cadence_known=known)
+    else:
+        (turn,) = turns
+        moments = JointMoments(name, turn.crank_angle, turn.knee, turn.hip, None, None, measured_on, known)
+    recording = replace(recording, turns=turns)
+    compared = tuple(comparisons(recording, moments, said, declared, cadence_said, spikes))
+    misreadings = tuple(comparison.misreading for comparison in compared if not comparison.agrees)
+    return Measurement(tuple(turns), replace(moments, misreadings=misreadings), compared, declared_sd)
 
-        rows = np.stack([np.ravel(fit(t.crank_angle, np.column_stack([t.knee, t.hip])).T) for t in turns])
-        few = float(stdtrit(len(turns) - 1, ndtr(1.0)))  # Student: one deviation holds 68 %, however few turns
-        covariance = few**2 * np.cov(rows.T) / len(turns)
-        angle = np.linspace(0, 2 * np.pi, 360, endpoint=False)
-        mean = Turn(angle, *(fourier(angle) @ part for part in np.split(rows.mean(axis=0), 2)))
-    moments = JointMoments(printable(path.stem), *mean, covariance, None, measured_on, cadence_known)
-    return Measurement(tuple(turns), replace(moments, misreadings=(*odd, *odd_moments(turns, moments))))
+
+def _at_cadence(path: Path, declared: ReferenceTricycle, recorded: float) -> ReferenceTricycle:
+    """The tricycle at the recorded cadence, rad/s. Raises InputError for one that nobody pedals."""
+    rpm, allowed = recorded / RPM, VARIABLES["cadence_rpm"]
+    if not allowed.accepts(rpm):
+        raise InputError(
+            f"{path}: a turn lasts {60 / rpm:.4g} s by the column of the time, which is {rpm:.3g} rpm; it must be "
+            f'{allowed.allowed}; is the time in ms (moments.time_unit = "ms")?'
+        )
+    return replace(declared, cadence=recorded)
 
 
 def sampled_coefficients(group: str) -> FloatArray:

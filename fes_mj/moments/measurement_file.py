@@ -13,34 +13,44 @@ from fes_mj.linkage.design_file import read_rider, read_values
 from fes_mj.linkage.joints import JOINTS, PerJoint
 from fes_mj.linkage.turning import turning
 from fes_mj.linkage.variables import VARIABLES
+from fes_mj.moments.conventions import CONVENTIONS, SIGNS, Convention
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE, ReferenceTricycle
+from fes_mj.moments.trial import TIME_UNITS
 
-_COLUMNS = {"crank": "crank_angle_deg", "knee": "knee_Nm", "hip": "hip_Nm"}
-_OTHERS = ("file", "kinematics", "knee_angle", "angle_unit", "zero", "turning", "unit", "extension", "pedal_force")
-_SIGNS = {"positive": 1.0, "negative": -1.0}
+_COLUMNS = {
+    "crank": "crank_angle_deg", "knee": "knee_Nm", "hip": "hip_Nm",
+    "knee_angle": "knee_angle_r", "hip_angle": "hip_flexion_r", "time": "", "trial": "", "rider": "",  # "": none
+}  # fmt: skip
+_OTHERS = (
+    "file", "kinematics", "angle_unit", "zero", "turning", "leg", "time_unit", "unit", "convention", "extension",
+    "pedal_force",
+)  # fmt: skip
 _SENSES = {"forward": 1.0, "backward": -1.0}
-_OF_MOMENTS = ("knee", "hip", "unit", "extension")  # what a file of pedal forces does not have
-_OF_THE_CRANK = ("crank", "angle_unit", "zero", "turning")  # what a trial counted by the knee does not have
+ANGLE_UNITS = {"deg": math.radians(1), "rad": 1.0, "turn": 2 * math.pi, "percent": 2 * math.pi / 100}  # rad
+UNITS = {"N m": 1.0, "N mm": 1e-3}  # N m; each also per kg
+_OF_MOMENTS = ("knee", "hip", "unit", "convention", "extension")  # what a file of pedal forces does not have
+_OF_THE_CRANK = ("crank", "angle_unit", "zero", "turning", "leg")  # what a trial counted by the knee does not have
 
 
 @dataclass(frozen=True)
 class Description:
     """A measurement file, every key checked.
 
-    files: those that it names, moments first. sign: of extension. sense: of the crank angle. zero: where that is, rad
-    after top dead centre. scale: N m per unit of the file. knee_angle: its column in the kinematics. pedal_force:
-    columns of its components, or none.
+    files: those that it names, moments first. columns: by key, "" for one that is not said. convention: signs of
+    extension. sense: of the crank angle. zero: where that is, rad after top dead centre. scale: N m per unit of the
+    file. time_unit: "" if it is not said. riders: by file, or none. pedal_force: columns of its components, or none.
     """
 
     section: Section
     data: list[Path]
     kinematics: list[Path]
     columns: dict[str, str]
-    knee_angle: str
-    sign: PerJoint[float]
+    convention: Convention
     sense: float
     zero: float
     scale: float
+    time_unit: str
+    riders: list[str]
     pedal_force: list[str]
     measured_on: ReferenceTricycle
     cadence_known: bool
@@ -62,18 +72,17 @@ class Description:
         if kinematics:
             _only_by_knee(section, data, kinematics)
         pedal_force = _pedal_force(section)
-        extension = section.section("extension")
-        extension.only(JOINTS)
         return cls(
             section,
             data,
             kinematics,
             {key: _word(section, key, default) for key, default in _COLUMNS.items()},
-            _word(section, "knee_angle", "knee_angle_r"),
-            PerJoint.of(lambda joint: _SIGNS[extension.choice(joint, _SIGNS, "positive")]),
+            _convention(section),
             _SENSES[section.choice("turning", _SENSES, "forward")],
             _zero(section, measured_on),
             _scale(section, content.section("measured_on").section("rider"), measured_on),
+            section.choice("time_unit", ("", *TIME_UNITS), ""),
+            _riders(section, len(data)),
             pedal_force,
             measured_on,
             bool({"cadence_rpm", "gear_ratio"} & content.section("measured_on").content.keys()),
@@ -92,7 +101,32 @@ def _paths(section: Section, key: str) -> list[Path]:
 
 
 def _word(section: Section, key: str, default: str) -> str:
+    if key == "rider" and isinstance(section.content.get(key), list):
+        return default
     return str(section.value(key, default, is_text, "the name of a column"))
+
+
+def _riders(section: Section, files: int) -> list[str]:
+    """The rider of each file, where the key `rider` is a list; empty where it is a column."""
+    value = section.content.get("rider")
+    if not isinstance(value, list):
+        return []
+    allowed = "the name of a column, or a list with a name for each file"
+    return [*section.value("rider", [], lambda names: is_list(names, is_text, files), allowed)]
+
+
+def _convention(section: Section) -> Convention:
+    """The signs that are said: by name or one by one, 0 where neither says it."""
+    extension = section.section("extension")
+    if "convention" in section.content:
+        _exclude(section, ["extension"], "convention", "tell the signs in two ways: leave out one of them")
+        return CONVENTIONS[section.choice("convention", CONVENTIONS)]
+    extension.only((*JOINTS, *(f"{joint}_angle" for joint in JOINTS)))
+
+    def sign(key: str) -> float:
+        return SIGNS[extension.choice(key, SIGNS)] if key in extension.content else 0.0
+
+    return Convention(PerJoint.of(lambda joint: sign(f"{joint}_angle")), PerJoint.of(sign))
 
 
 def _pedal_force(section: Section) -> list[str]:
@@ -123,20 +157,23 @@ def _only_by_knee(section: Section, data: list[Path], kinematics: list[Path]) ->
 
 
 def _zero(section: Section, measured_on: ReferenceTricycle) -> float:
-    """Where the crank angle is zero, rad after top dead centre."""
+    """Where the crank angle is zero, rad after top dead centre of the leg: the left leg's comes half a turn later."""
     value = section.content.get("zero", "tdc")
+    later = math.pi * (section.choice("leg", ("right", "left"), "right") == "left")
     if isinstance(value, str):
         named = {"tdc": 0.0, "horizontal": -measured_on.top_dead_centre}
-        return named[section.choice("zero", named, "tdc")]
-    return math.radians(section.number("zero", -360, 360, '"tdc", "horizontal" or degrees after tdc from -360 to 360'))
+        return named[section.choice("zero", named, "tdc")] - later
+    allowed = '"tdc", "horizontal" or degrees after tdc from -360 to 360'
+    return math.radians(section.number("zero", -360, 360, allowed)) - later
 
 
 def _scale(section: Section, rider: Section, measured_on: ReferenceTricycle) -> float:
     """N m per unit of the file."""
-    if section.choice("unit", ("N m", "N m/kg"), "N m") == "N m":
-        return 1.0
-    rider.require(["mass"], f"{section.label('unit')} is N m/kg: the moments are per kg of the rider's body mass")
-    return float(measured_on.design.rider.mass)
+    unit = section.choice("unit", [name + per for per in ("", "/kg") for name in UNITS], "N m")
+    name, per_kg, _ = unit.partition("/kg")
+    if per_kg:
+        rider.require(["mass"], f"{section.label('unit')} is {unit}: the moments are per kg of the rider's body mass")
+    return UNITS[name] * (measured_on.design.rider.mass if per_kg else 1.0)
 
 
 def _measured_on(section: Section) -> ReferenceTricycle:

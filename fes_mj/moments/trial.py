@@ -1,118 +1,128 @@
-"""Trials over time: OpenSim's .sto and .mot files and CSV files with a time column, cut into turns of the crank."""
+"""Trials cut into turns of the crank: over time, or row by row."""
 
-import re
-from pathlib import Path
-from typing import NamedTuple
+import math
+from collections.abc import Collection
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from fes_mj.common.arrays import FloatArray, IntArray
 from fes_mj.common.errors import InputError
-from fes_mj.common.reading import TextTable, read_table
+from fes_mj.moments.tables import Table
 
-WHAT = "joint moments"
-OPENSIM = (".sto", ".mot")
-LARGEST_MOMENT = 1e4  # N m, ten times what a strong leg can do; beyond it the unit is another one
-LARGEST_ANGLE = 1e7  # deg or rad, more than a day of pedalling
-_NEAR_TOP = 2 * np.pi / 9  # on either side of a dead centre the knee's angle is taken for a cubic
-_REAL = 1e-12  # s
-_LEAST_SWING = 0.5  # of the knee's whole range: smaller dips are noise
+TIME_UNITS = {"s": 1.0, "ms": 1e-3}  # s
+_SAME = 0.01  # of a column's range: values at one time that differ by less are one sample printed twice
 
 
-class Turn(NamedTuple):
-    """One turn: crank angle in rad from top dead centre, knee and hip moment in N m, shape (n,) each."""
+def times(table: Table, column: str, unit: str, columns: Collection[str]) -> tuple[Table, FloatArray]:
+    """The rows of a trial and their times, s; a row printed twice, as OpenSim does, counts once.
 
-    crank_angle: FloatArray
-    knee: FloatArray
-    hip: FloatArray
-
-
-def load_table(path: Path, what: str) -> TextTable:
-    """A CSV or an OpenSim file. Raises InputError as inputs.read_table."""
-    opensim = path.suffix.lower() in OPENSIM
-    return read_table(path, what, after="endheader" if opensim else "", commas=not opensim)
-
-
-def is_trial(table: TextTable) -> bool:
-    """Whether a table is a series over time."""
-    return table.path.suffix.lower() in OPENSIM or "time" in table.header
-
-
-def bounded(table: TextTable, column: str, angle: bool = False) -> FloatArray:
-    """A column of moments (N m or N m/kg) or crank angles, every value of which a leg or a crank can have."""
-    limit, values = LARGEST_ANGLE if angle else LARGEST_MOMENT, table.column(column)
-    for line, value in zip(table.lines, values.tolist(), strict=True):
-        if abs(value) > limit:
-            raise InputError(
-                f"{table.path}: line {line}: {column} is {value:g}; it must be from -{limit:g} to {limit:g}"
-            )
-    return values
-
-
-def says_radians(table: TextTable) -> bool | None:
-    """Whether an OpenSim header says that angles are in radians; None if it does not say."""
-    declared = re.search(r"^\s*inDegrees\s*=\s*(yes|no)\s*$", table.preamble, re.IGNORECASE | re.MULTILINE)
-    return declared.group(1).lower() == "no" if declared else None
-
-
-def times(table: TextTable) -> FloatArray:
-    """The column "time", s, shape (n,). Raises InputError unless it grows."""
-    path, time = table.path, table.column("time")
+    column, unit: of the times, "" for what the header says. columns: those that are used, by which rows are the same.
+    Raises InputError unless time grows.
+    """
+    path, name = table.path, column or table.time_column or "time"
+    time = table.column(name)
     if len(time) < 2:
         raise InputError(f"{path}: {len(time)} row; a trial is a series over time")
-    stuck = np.flatnonzero(np.diff(time) <= 0)
-    if stuck.size:
-        row = int(stuck[0]) + 1
+    stuck = np.diff(time, prepend=-np.inf) <= 0
+    again = np.diff(time, prepend=np.nan) == 0
+    for values in (table.column(used) for used in columns):
+        again &= np.abs(np.diff(values, prepend=np.nan)) <= _SAME * np.ptp(values)
+    wrong = np.flatnonzero(stuck & ~again)
+    if wrong.size:
+        row = int(wrong[0])
         raise InputError(
-            f"{path}: line {table.lines[row]}: time is {time[row]:g} after {time[row - 1]:g} s; it must grow"
+            f"{path}: line {table.lines[row]}: {name} is {time[row]:g} after {time[row - 1]:g} s; it must grow"
         )
-    return time
+    kept = np.flatnonzero(~again)
+    return (table.taken(kept.tolist()) if again.any() else table), TIME_UNITS[unit or table.time_unit] * time[kept]
 
 
-def by_crank(path: Path, column: str, angle: FloatArray) -> list[IntArray]:
-    """Samples of each whole turn, by a crank angle in rad that counts in the sense of pedalling, wrapped or not.
+def by_crank(table: Table, column: str, angle: FloatArray) -> list[IntArray]:
+    """Rows of each whole turn, by a crank angle in rad that counts in the sense of pedalling, wrapped or not.
 
-    Turns are counted from the first sample. Raises InputError for fewer than one.
+    Turns are counted from the first row. Raises InputError for fewer than one, with the likely cause.
     """
     turned = np.unwrap(angle)
     turned = turned - turned[0]
+    turns = _whole(turned)
+    cause = likely_cause(table.column(column)) if turns < 1 and _whole(-turned) < 1 else ""
+    if cause:
+        raise InputError(f"{table.path}: {column} does not go through a whole turn; {cause}")
     if turned[-1] < 0:
         raise InputError(
-            f"{path}: {column} counts against the sense of pedalling while time grows; "
+            f"{table.path}: {column} counts against the sense of pedalling while time grows; "
             'moments.turning must be the other of "forward" and "backward"'
         )
-    turns = int((turned[-1] + np.median(np.diff(turned))) / (2 * np.pi) + 1e-6)  # the last sample closes the turn
-    if not turns:
-        raise InputError(f"{path}: {column} goes through {np.degrees(turned[-1]):.0f} deg; a whole turn is needed")
+    if turns < 1:
+        raise InputError(
+            f"{table.path}: {column} goes through {np.degrees(turned[-1]):.0f} deg; a whole turn is needed"
+        )
     number = np.floor(turned / (2 * np.pi))
     return [np.flatnonzero(number == turn) for turn in range(turns)]
 
 
-def by_knee(path: Path, column: str, time: FloatArray, knee: FloatArray) -> FloatArray:
-    """Times (s) at which the knee is bent most, top dead centre; knee: any unit, growing in extension.
+def in_order(angle: FloatArray) -> list[IntArray]:
+    """Rows of each turn where no time is recorded: several turns if every angle stands as often, or if they go round.
 
-    Raises InputError for fewer than two.
+    Otherwise all rows are one turn, in any order.
     """
-    from scipy.signal import find_peaks
+    inside = np.round(np.mod(angle, 2 * np.pi), 6)
+    _, place, count = np.unique(inside, return_inverse=True, return_counts=True)
+    if len(count) > 1 and count[0] > 1 and (count == count[0]).all():
+        ordered = np.argsort(place, kind="stable").reshape(-1, count[0])  # angles, their rows as they come
+        return [np.sort(rows) for rows in ordered.T]
+    turned = np.unwrap(angle)
+    turned = (turned - turned[:1]) * np.sign(turned[-1:] - turned[:1])
+    turns = _whole(turned)
+    if turns < 2 or np.diff(turned).min() < 0:
+        return [np.arange(len(angle))]
+    number = np.floor(turned / (2 * np.pi))
+    return [np.flatnonzero(number == turn) for turn in range(turns)]
 
-    bent = np.pad(-knee, 1, constant_values=-knee.max())  # a swing that the recording cuts off is a whole one
-    tops = find_peaks(bent, prominence=max(_LEAST_SWING * np.ptp(knee), np.finfo(float).tiny))[0] - 1
-    tops = tops[(tops > 0) & (tops < len(knee) - 1)]
-    if len(tops) < 2:
-        raise InputError(
-            f"{path}: {column} is smallest {len(tops)} times; a whole turn lies between two such dead centres"
-        )
-    rough = time[tops]
-    reach = np.median(np.diff(rough)) * _NEAR_TOP / (2 * np.pi)
-    return np.array([_lowest(time, knee, top, reach) for top in rough])
+
+def _whole(turned: FloatArray) -> int:
+    """Whole turns of an angle from zero, rad; the step from the last sample closes one."""
+    if len(turned) < 2:
+        return 0
+    return int((turned[-1] + np.median(np.diff(turned))) / (2 * np.pi) + 1e-6)
 
 
-def _lowest(time: FloatArray, value: FloatArray, near: float, reach: float) -> float:
-    """Time of the minimum of the cubic through the values within `reach` of `near`."""
-    part = np.abs(time - near) <= reach
-    if part.sum() < 6:
-        return near
-    cubic = np.polynomial.Polynomial.fit(time[part] - near, value[part], 3)
-    slope, bend = cubic.deriv(), cubic.deriv(2)
-    minima = [float(root.real) for root in slope.roots() if abs(root.imag) < _REAL and bend(root.real) > 0]
-    return near + float(np.clip(min(minima, key=abs, default=0.0), -reach, reach))
+class _Cause(NamedTuple):
+    """What a column of crank angles can be instead: whether it looks so, and what to do."""
+
+    looks: Any
+    advice: str
+
+
+def likely_cause(values: FloatArray) -> str:
+    """Why numbers that are declared as a crank angle go through no whole turn; "" if nothing is known."""
+    steps = np.diff(values)
+    top, back = float(values.max()), steps[steps < 0]
+    falls = back[back < -0.5 * np.ptp(values)] if np.ptp(values) else back
+    causes = (
+        _Cause({*values.tolist()} <= {0.0, 1.0}, "it is 0 and 1 only: an index pulse? Name the column of the angle"),
+        _Cause(
+            abs(values).max() <= 1.0,
+            'all are within 1: whole turns? angle_unit = "turn"',
+        ),
+        _Cause(
+            abs(values).max() < 2 * math.pi + 0.01,
+            f'all are below {top:.3g}: radians? angle_unit = "rad"',
+        ),
+        _Cause(
+            80 < top <= 100 and len(falls) > 0,
+            f'it falls back from {top:.3g}: per cent of the turn? angle_unit = "percent"',
+        ),
+        _Cause(
+            len(falls) > 0 and 160 < -np.median(falls) < 200,
+            f"it falls back by {-np.median(falls) if len(falls) else 0:.0f} deg: two turns of the signal a turn of "
+            "the crank? Double it and unwrap it first",
+        ),
+        _Cause(
+            np.ptp(values) > 300 and len(back) > 0,
+            f"it goes back from {top:.0f} to {values.min():.0f} through values between: was it filtered after it was "
+            "wrapped? Unwrap it before filtering",
+        ),
+    )
+    return next((cause.advice for cause in causes if cause.looks), "")

@@ -53,7 +53,7 @@ def test_every_command_repeats_the_warnings(
     of = {"moments": [str(path)], "optimize": ["crt", "--moments", str(path)]}
     code, _, err = result(capsys, what, *of.get(what, ["d1", "--moments", str(path)]), *more, "-q")
     assert code in (0, 1)
-    assert "warning: half: there is no sample in 210 deg of the turn" in err
+    assert "warning: half: largest gap: 210 deg recorded, at most 60 expected" in err
 
 
 def test_what_is_refused(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:

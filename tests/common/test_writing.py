@@ -11,10 +11,9 @@ import pytest
 
 from fes_mj.common import reading as inputs
 from fes_mj.common.errors import InputError
-from fes_mj.common.reading import Section, read_json, read_table, read_text, read_toml
+from fes_mj.common.reading import Section, read_json, read_text, read_toml
 from fes_mj.common.writing import (
     RECORD,
-    csv_text,
     remove_leftovers,
     replacing,
     require_replaceable,
@@ -73,11 +72,6 @@ def test_a_byte_order_mark_is_passed_over(tmp_path: Path) -> None:
     path = tmp_path / "a.toml"
     path.write_text("a = 1", encoding="utf-8-sig")
     assert read_toml(path, "test file").content == {"a": 1}
-    path.write_text("a,b\n1,2\n\n3,4\n", encoding="utf-8-sig")
-    table = read_table(path, "table")
-    assert table.lines == [2, 4]
-    assert table.column("a").tolist() == [1, 3]
-    assert table.column("b").tolist() == [2, 4]
 
 
 def test_unreadable_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -94,14 +88,6 @@ def test_unreadable_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
     monkeypatch.setattr(inputs, "LARGEST_INPUT", 4)
     with pytest.raises(InputError, match="it is larger than"):
         read_text(large, "test file")
-
-
-def test_a_table_reads_back(tmp_path: Path) -> None:
-    path = tmp_path / "t.csv"
-    path.write_text(csv_text({"a": [1.0, 2.5], "b": [0.1, -3e-12]}))
-    table = read_table(path, "table")
-    assert table.column("a").tolist() == [1.0, 2.5]
-    assert table.column("b").tolist() == [0.1, -3e-12]
 
 
 @pytest.mark.parametrize(

@@ -31,7 +31,7 @@ def test_rows_may_come_in_any_order_and_spacing(tmp_path: Path) -> None:
             "angle,knee,hip\n0,1,1\n",
             "header is 'angle,knee,hip'; of a plain file it must be 'crank_angle_deg,knee_Nm,hip_",
         ),
-        ("crank_angle_deg;knee_Nm;hip_Nm\n0;1;1\n", "the header is 'crank_angle_deg;knee_Nm;hip_Nm'"),
+        ("crank_angle_deg|knee_Nm|hip_Nm\n0|1|1\n", "the header is 'crank_angle_deg|knee_Nm|hip_Nm'"),
         ("crank_angle_deg,from_tdc,knee_Nm,hip_Nm\n0,1,1,1\n", "in a measurement file (.toml)"),
         (HEADER, "0 row"),
         (HEADER + "0,1,1\n", "1 row of moments at one crank angle; at least 2 crank angles are needed"),
@@ -60,7 +60,7 @@ def test_unreadable_files(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="Is a directory"):
         load_moments(tmp_path)
     (tmp_path / "binary.csv").write_bytes(b"\xff\xfe\x00")
-    with pytest.raises(InputError, match="UTF-8"):
+    with pytest.raises(InputError, match=r"no text table; .*CSV"):
         load_moments(tmp_path / "binary.csv")
 
 
