@@ -52,7 +52,7 @@ class Trial:
     seed: int = 1
 
     def columns(self) -> dict[str, np.ndarray]:
-        """Time (s), crank (rad from top dead centre), angles (deg) and moments (N m) with the signs of the convention."""
+        """Time (s), crank (rad from top dead centre), angles (deg) and moments (N m) as the convention counts them."""
         random, speed = np.random.default_rng(self.seed), self.cadence * np.pi / 30
         time = np.arange(round(self.turns * 60 / self.cadence * self.rate)) / self.rate
         crank = self.crank_at(time) if self.crank_at else self._turned(speed * time - 0.9)
