@@ -11,7 +11,7 @@ from fes_mj.linkage import kinematics
 from fes_mj.linkage.design import ARCHITECTURES, Design, Linkage, Rider
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
-from fes_mj.statics.extrapolation import turning_in_range
+from fes_mj.statics.validity import turning_in_range
 
 NEAREST, FARTHEST = 1.5e-4, 0.03  # m from the nearest dead centre
 FINE = np.linspace(0, 2 * np.pi, 7200, endpoint=False)

@@ -19,8 +19,8 @@ from fes_mj.cli.options import (
     PrintOptions,
     Seed,
     bounds,
-    crank_speed,
     needs,
+    speed_at,
 )
 from fes_mj.cli.tables import or_dash, print_notes, span, with_error
 from fes_mj.common.console import conclude, print_table, progress_bar, say
@@ -136,7 +136,7 @@ def fit(
     loaded, joint_moments, limits = load_design(design, dims), moments.load_moments(), seat.load()
     inputs, ratio = moments.inputs(design), loaded.linkage.gear_ratio
     # with another gear ratio the crank has the cadence at the speed of the tricycle
-    loaded = loaded.with_linkage(gear_ratio=ratio * crank_speed(cadence, loaded) / loaded.linkage.cadence)
+    loaded = loaded.with_linkage(gear_ratio=ratio * speed_at(cadence, loaded) / loaded.linkage.cadence)
     if population:
         for name, value in {"out": out, **vars(who)}.items():
             if value is not None:

@@ -14,7 +14,7 @@ from fes_mj.common.errors import InputError
 from fes_mj.common.units import RPM
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.design_file import load_design
-from fes_mj.linkage.variables import VARIABLES, require_cadence
+from fes_mj.linkage.variables import VARIABLES, crank_speed
 from fes_mj.moments.files import load_moments, measured_files
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.torque_velocity import load_torque_velocity
@@ -147,7 +147,7 @@ class LoadOptions(MomentsOptions):
         moments, loaded = self.load_moments(self.legs), load_design(design, self.dims)
         if self.torque_velocity:
             moments = moments.at_speed(load_torque_velocity(self.torque_velocity))
-        return Loaded(loaded, moments, crank_speed(self.cadence, loaded))
+        return Loaded(loaded, moments, speed_at(self.cadence, loaded))
 
 
 @Parameter(name="*")
@@ -180,8 +180,6 @@ def require_lag(lag: float, design: Design, cadence: float) -> None:
         )
 
 
-def crank_speed(cadence: float | None, design: Design) -> float:
+def speed_at(cadence: float | None, design: Design) -> float:
     """Crank speed in rad/s of a --cadence in rpm, by default the design's own."""
-    if cadence is not None:
-        return cadence * RPM
-    return require_cadence(design, "change the ratio or give --cadence")
+    return crank_speed(design, None if cadence is None else cadence * RPM)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from cyclopts import Group, Parameter
 from cyclopts.validators import Number, mutually_exclusive
 
-from fes_mj.cli.options import DesignName, Dims, Flag, Lag, MomentsOptions, Out, PrintOptions, require_lag
+from fes_mj.cli.options import DesignName, Dims, Flag, Lag, MomentsOptions, Out, PrintOptions, require_lag, speed_at
 from fes_mj.cli.tables import beside, conclude_checks, or_dash, print_checks, what_moves
 from fes_mj.common.console import print_table, say
 from fes_mj.common.errors import require_extra
@@ -67,7 +67,7 @@ class RideOptions(PrintOptions, MomentsOptions):
     def load(self, name: str) -> Ride:
         """Load everything the options name. Raises InputError for what cannot be used."""
         design, moments = load_design(name, self.dims), self.load_moments(2)
-        require_lag(self.lag, design, design.linkage.cadence)
+        require_lag(self.lag, design, speed_at(None, design))
         if self.torque_velocity == "hill":
             moments = moments.at_speed(load_torque_velocity("hill"))
         if self.lag:

@@ -6,7 +6,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from fes_mj.cli.options import Cadence, DesignName, Dims, Lag, Legs, PrintOptions, bounds, crank_speed, require_lag
+from fes_mj.cli.options import Cadence, DesignName, Dims, Lag, Legs, PrintOptions, bounds, require_lag, speed_at
 from fes_mj.common.console import print_table, say
 from fes_mj.common.errors import require_extra
 from fes_mj.common.writing import PICTURES, require_writable, write_text
@@ -40,7 +40,7 @@ def stimulation(
         plot: Draw those of the right leg as rings (.png or .svg).
     """
     loaded, inputs = load_design(design, dims), [Path(design)]
-    cadences = [crank_speed(rpm, loaded) for rpm in cadence or (None,)]
+    cadences = [speed_at(rpm, loaded) for rpm in cadence or (None,)]
     for speed in cadences:
         require_lag(lag, loaded, speed)
     require_writable(csv, "the windows", ".csv", inputs)

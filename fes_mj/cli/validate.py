@@ -17,7 +17,7 @@ from fes_mj.common.errors import InputError
 from fes_mj.common.provenance import provenance
 from fes_mj.common.writing import require_writable, write_text
 from fes_mj.linkage.design_file import DESIGNS, design_path
-from fes_mj.statics.extrapolation import turning_in_range
+from fes_mj.statics.validity import valid_speed
 from fes_mj.viewing.pages import require_page_packages
 
 if TYPE_CHECKING:
@@ -102,7 +102,7 @@ def _cases(designs: Sequence[str], options: RunOptions, quick: bool) -> Iterator
             case = VerificationCase(
                 *choice.load(design), expected=printed, file=design_path(design, options.dims), refined=not quick
             )
-            turning_in_range(case.design, case.moments.measured_on)
+            valid_speed(case.design, case.moments, case.cadence)
             yield case
 
 

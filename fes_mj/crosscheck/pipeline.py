@@ -12,14 +12,15 @@ from fes_mj.linkage.design import Design
 from fes_mj.linkage.inertia import GRAVITY, BodyLoad, body_loads
 from fes_mj.linkage.joints import PerJoint
 from fes_mj.linkage.kinematics import Motion
+from fes_mj.linkage.variables import crank_speed
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.torque_map import TorqueMap, torque_map
 from fes_mj.simulation.appearance import Spec
 from fes_mj.simulation.bench import PLAIN, BenchOptions, Simulation, simulate
 from fes_mj.simulation.mjcf import REAL, ModelOptions, Physics, build_mjcf
 from fes_mj.statics.equilibrium import equilibrium, virtual_work
-from fes_mj.statics.extrapolation import turning_in_range
 from fes_mj.statics.turn import QuasiStatic
+from fes_mj.statics.validity import turning_in_range
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,7 +39,7 @@ class Setup:
 
     def __post_init__(self) -> None:
         given = None if math.isnan(self.cadence) else self.cadence
-        object.__setattr__(self, "cadence", self.design.crank_speed(given))
+        object.__setattr__(self, "cadence", crank_speed(self.design, given))
 
 
 class Pipeline(Setup):

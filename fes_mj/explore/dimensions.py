@@ -10,7 +10,7 @@ from fes_mj.common.text import printable
 from fes_mj.common.units import RPM
 from fes_mj.linkage.design import Design, Linkage
 from fes_mj.linkage.design_file import design_toml, read_design
-from fes_mj.linkage.variables import COMPONENTS, VARIABLES, Component, component, require_cadence
+from fes_mj.linkage.variables import COMPONENTS, VARIABLES, Component, component, crank_speed
 
 # Unit of files -> unit of the page, how many of it, how far a slider goes to either side, its step (page's unit).
 _SCALES: dict[str, tuple[str, float, float, float]] = {
@@ -37,7 +37,7 @@ def design_of(content: Any) -> Design:
     tables = {key: value for key, value in content.items() if key != "name"}
     name = printable(content["name"])
     design = read_design(Section(Path(name), "", tables), name)
-    require_cadence(design)
+    crank_speed(design)
     return design
 
 

@@ -177,20 +177,6 @@ class Design:
         """The design with these attributes of its rider changed, lengths in m, the mass in kg."""
         return replace(self, rider=replace(self.rider, **numbers))
 
-    def crank_speed(self, cadence: float | None = None) -> float:
-        """Crank speed of a run, rad/s: `cadence`, or if it is None that of Eq. 16.
-
-        Raises InputError unless it is finite and above zero.
-        """
-        if cadence is None:
-            return self.linkage.cadence
-        if not 0 < cadence < math.inf:
-            raise InputError(
-                f"{self.name}: cadence is {cadence:g}; it must be a crank speed above 0 in rad/s, or None for the "
-                "design's own"
-            )
-        return cadence
-
     @property
     def is_batch(self) -> bool:
         """Whether any number of the linkage or the rider is an array."""

@@ -78,6 +78,28 @@ VARIABLES = {
 }
 
 
+def runnable(cadence: Any) -> Any:
+    """Whether crank speeds, rad/s, are within the bounds of cadence_rpm, the ends included however computed."""
+    allowed, rpm = VARIABLES["cadence_rpm"], np.round(cadence / RPM, 9)
+    return (allowed.low <= rpm) & (rpm <= allowed.high)
+
+
+def crank_speed(design: Design, cadence: float | None = None) -> float:
+    """Crank speed of a run, rad/s: `cadence` or, if it is None, that of Eq. 16.
+
+    Raises InputError unless it is a cadence that can be run.
+    """
+    allowed, speed = VARIABLES["cadence_rpm"].allowed, design.linkage.cadence if cadence is None else cadence
+    if runnable(speed):
+        return speed
+    if cadence is not None:
+        raise InputError(f"{design.name}: cadence is {speed / RPM:.4g} rpm; it must be {allowed}")
+    raise InputError(
+        f"{design.name}: linkage.gear_ratio is {design.linkage.gear_ratio:g}, which makes {speed / RPM:.3g} rpm at the "
+        f"tricycle's speed; it must be {allowed}: change the ratio or give a cadence"
+    )
+
+
 class Component(NamedTuple):
     """A plain number of a variable: itself, or the "real" or "imag" part of a vector."""
 
@@ -99,17 +121,6 @@ def component(design: Design, name: str) -> float:
     variable, part = COMPONENTS[name]
     value = getattr(getattr(design, variable.owner), variable.attribute)
     return nearest_degrees(value) if variable.unit == "deg" else float(getattr(value, part) if part else value)
-
-
-def require_cadence(design: Design, way_out: str = "change the ratio") -> float:
-    """A design's own crank speed, rad/s. Raises InputError for one that is no cadence a run can have."""
-    allowed, own = VARIABLES["cadence_rpm"], design.linkage.cadence / RPM
-    if not allowed.accepts(own):
-        raise InputError(
-            f"{design.name}: linkage.gear_ratio is {design.linkage.gear_ratio:g}, which makes {own:.3g} rpm at the "
-            f"tricycle's speed; it must be {allowed.allowed}: {way_out}"
-        )
-    return design.linkage.cadence
 
 
 def nearest_degrees(angle: float) -> float:

@@ -15,7 +15,7 @@ from fes_mj.common.machine_code import readable
 from fes_mj.common.units import KMH, RPM
 from fes_mj.linkage.legs import TWO_LEGS
 from fes_mj.riding.ride import Ride
-from fes_mj.statics.extrapolation import turning_in_range
+from fes_mj.statics.validity import turning_in_range
 
 LAST_TURNS = 5  # whole turns at the end, over which a ride is described
 # A tricycle that is no faster than this at the end, or this far back from where it had come, does not ride. Dry

@@ -19,7 +19,7 @@ from fes_mj.simulation.appearance import Spec
 from fes_mj.simulation.mjcf import REAL, ModelOptions, Physics, build_mjcf
 from fes_mj.simulation.stepping import PRE_ROLL, LoopMaker, Run, Sensors, feedback_loop, run_loop
 from fes_mj.simulation.time_step import steps_per_turn
-from fes_mj.statics.extrapolation import turning_in_range
+from fes_mj.statics.validity import valid_speed
 
 
 @dataclass(frozen=True)
@@ -146,10 +146,8 @@ def simulate(
     >>> fes_mj.simulate(fes_mj.load_design("d1"), fes_mj.load_moments("p1p2"))
     <Simulation d1 p1p2: 31.14 W at 96.4 rpm, 2880 steps>
     """
-    cadence = design.crank_speed(cadence)
+    cadence = valid_speed(design, moments, cadence, legs)
     torque, pair = options.torque or torque_map(moments), LEGS[legs]
-    for leg in pair:
-        turning_in_range(design, torque.of(leg.prefix).reference)
     model_options = ModelOptions(options.physics, drawn=False)
     spec = build_mjcf(design, cadence=cadence, timestep=timestep, legs=legs, options=model_options)
     if options.edit:

@@ -19,12 +19,14 @@ from fes_mj.linkage.design import Design
 from fes_mj.linkage.legs import LEGS
 from fes_mj.linkage.shapes import lowest_point
 from fes_mj.linkage.turning import FROM_TOP, turning
+from fes_mj.linkage.variables import crank_speed
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.torque_map import torque_map
 from fes_mj.simulation.appearance import FIELD_OF_VIEW, Spec, framing
 from fes_mj.simulation.road_mjcf import ROAD
 from fes_mj.simulation.variants import variant_model, variant_options
 from fes_mj.statics.equilibrium import crank_moment
+from fes_mj.statics.validity import valid_speed
 
 SIDECAR_ROWS = 720  # a turn: every half degree
 CAMERA_SIDE = (-0.55, 0.80, 0.25)  # of the oblique camera: from the front right, a little above
@@ -37,6 +39,7 @@ _COMMENTS = {
     'integrator="RK4"': "Nothing holds the crank, and Runge-Kutta keeps its energy within 0.5 % over 5 s.",
     'integrator="implicitfast"': "The crank is laden with so much inertia that one evaluation a step keeps the energy.",
     "<geom contype": "Geoms are pictures: they neither weigh nor touch.",
+    "<site quat": "Turned, as centres of mass are, or the compiler would swallow offsets below 1e-6 m.",
     "<equality solref": "With MuJoCo's defaults the loops open by up to 14.4 mm and the mean power is lost.",
     "<inertial": "Planar: only the moment about y acts; the other two repeat it.",
     "<connect": "Loops are cut at passive pins that carry no drive, no limit and no friction.",
@@ -102,7 +105,7 @@ def sidecar_text(design: Design, moments: JointMoments, cadence: float | None = 
     Angles and moments of the driven joints, named as in the model, then the moment of all legs on the crank: with
     masses and weight, as the model shows it, and without (quasi-static).
     """
-    cadence, torque = design.crank_speed(cadence), torque_map(moments)
+    cadence, torque = crank_speed(design, cadence), torque_map(moments)
     angle = np.linspace(0, 2 * np.pi, SIDECAR_ROWS, endpoint=False)
     columns = {"crank_angle_deg": np.degrees(angle), FROM_TOP: turning(design).degrees_from_top(angle)}
     massive, massless = np.zeros((2, SIDECAR_ROWS))
@@ -140,7 +143,8 @@ def export(
     >>> [file.name for file in files.values()]
     ['d1.xml', 'd1.csv']
     """
-    options, out, cadence = variant_options(variants), Path(path), design.crank_speed(cadence)
+    options, out = variant_options(variants), Path(path)
+    cadence = valid_speed(design, moments, cadence, options.get("legs", 1))
     require_writable(out, "the model", ".xml", inputs)
     files = {"model": out, "table": out.with_suffix(".csv")}
     require_replaceable([files["table"]], "the table", inputs)

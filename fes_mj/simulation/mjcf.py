@@ -21,6 +21,7 @@ from fes_mj.linkage.inertia import GRAVITY, Inertia, combine, inertias
 from fes_mj.linkage.kinematics import Motion
 from fes_mj.linkage.legs import LEGS, Leg
 from fes_mj.linkage.turning import turning
+from fes_mj.linkage.variables import crank_speed
 from fes_mj.simulation import appearance
 from fes_mj.simulation.appearance import Spec
 from fes_mj.simulation.time_step import loose_steps, steps_per_turn
@@ -41,6 +42,9 @@ LOOP_SOLIMP = (0.9999, 0.9999, 0.001, 0.5, 2.0)
 
 # Angles grow counter-clockwise in the paper's view, which is about -y.
 AXIS = (0.0, -1.0, 0.0)
+# MuJoCo's compiler takes a site or a centre of mass within 1e-6 m of its body's origin, or of each other, for that very
+# place, but not if their frames are turned against each other: so offsets stay exact. Half turns, as quaternions.
+SITE_TURN, INERTIA_TURN = (0.0, 0.0, 1.0, 0.0), (0.0, 0.0, 0.0, 1.0)
 # Added to make -0.0 a plain 0.0: MuJoCo leaves values that equal the default out of the file, and the sign with them.
 NO_MINUS = 0.0
 
@@ -104,7 +108,7 @@ def build_mjcf(
     """
     turning(design)
     pair, physics, held = LEGS[legs], options.physics, options.driven and options.held
-    cadence = design.crank_speed(cadence)
+    cadence = crank_speed(design, cadence)
     spec = mujoco.MjSpec()
     spec.modelname = design.name
     spec.comment = f"{design.name}: {design.linkage.architecture.title}, {cadence / RPM:.2f} rpm"
@@ -175,6 +179,7 @@ def _set_defaults(spec: Spec, loop_solref: tuple[float, float]) -> None:
     shared.joint.axis = AXIS
     shared.equality.solref, shared.equality.solimp = loop_solref, LOOP_SOLIMP
     shared.site.group, shared.site.size = 4, [0.005] * 3  # hidden unless asked for
+    shared.site.quat = SITE_TURN
     # geoms are pictures: no mass, no contact
     shared.geom.density, shared.geom.contype, shared.geom.conaffinity, shared.geom.group = 0, 0, 0, 2
     appearance.define_parts(spec, shared)
@@ -203,7 +208,7 @@ def add_body(
     body = parent.add_body(name=name, pos=pos, quat=(math.cos(pose), 0, math.sin(pose), 0))
     # only the moment about the plane's normal matters; equal ones satisfy the triangle inequality
     body.mass, body.ipos, body.inertia = inertia.mass, position(inertia.centre), [inertia.moment] * 3
-    body.explicitinertial = True
+    body.iquat, body.explicitinertial = INERTIA_TURN, True
     hinge = body.add_joint(name=joint or name, ref=angle)
     if sense < 0:
         hinge.axis = [NO_MINUS - part for part in AXIS]

@@ -19,7 +19,7 @@ from fes_mj.simulation.bench import joint_drives
 from fes_mj.simulation.road_control import RoadControl, act, memory_of, road_control
 from fes_mj.simulation.road_mjcf import DRIVETRAIN, ROAD, TIMESTEP, build_road_mjcf, start_state
 from fes_mj.simulation.stepping import PRE_ROLL, Loop, Run, Sensors, controlled_loop, energy, run_loop
-from fes_mj.statics.extrapolation import turning_in_range
+from fes_mj.statics.validity import turning_in_range
 
 MakeControl: TypeAlias = Callable[[mujoco.MjModel], RoadControl]  # the control of a ride in its model
 

@@ -1,19 +1,12 @@
-"""Where joints leave the range of their moments: refused if they never enter it, and what it costs in certainty."""
+"""Where joints leave the range of their moments, and what it costs in certainty."""
 
-from collections.abc import Iterator
-from contextlib import suppress
 from dataclasses import dataclass
-from functools import lru_cache
-from typing import Any
 
 import numpy as np
 
 from fes_mj.common.arrays import BoolArray, FloatArray
-from fes_mj.common.errors import AssemblyError, InputError
-from fes_mj.linkage.design import Design
 from fes_mj.linkage.joints import JOINTS, PerJoint
 from fes_mj.linkage.kinematics import Motion
-from fes_mj.linkage.turning import Turning, turning
 from fes_mj.moments.reference_tricycle import ReferenceTricycle
 from fes_mj.moments.torque_map import TorqueMap
 
@@ -122,73 +115,3 @@ def drift_area(excess: FloatArray, half_range: float) -> FloatArray:
     """Integral over the angle of the drift (see extrapolation), rad, from an end of the range to `excess` beyond it."""
     part = np.clip(excess, 0, half_range)
     return np.asarray(part**2 / (2 * half_range) + np.maximum(excess - half_range, 0))
-
-
-def turning_in_range(design: Design, reference: ReferenceTricycle) -> Turning:
-    """The turning of a design each of whose joints enters the range of moments measured on `reference`.
-
-    Raises InputError, with the likely cause, unless it does, and AssemblyError, which is one, unless it turns.
-    """
-    try:
-        turn = turning(design)
-    except AssemblyError as error:
-        raise AssemblyError(f"{error}{_likely_cause(design, reference)}") from None
-    never = _joints_without_data(turn, reference)
-    if never:
-        raise InputError(
-            f"{design.name}: {'; '.join(never)}: it never comes into that range{_likely_cause(design, reference)}"
-        )
-    return turn
-
-
-@lru_cache(maxsize=64)
-def _joints_without_data(turn: Turning, reference: ReferenceTricycle) -> list[str]:
-    """What to say of each joint that never enters the range."""
-    angles = turn.motion.joint_angle
-    outside = never_inside(beyond(reference, angles))
-    never = []
-    for joint, angle in angles.items():
-        if outside[joint]:
-            ends = (angle.min(), angle.max()), reference.ranges[joint]
-            own, known = (f"{low:.1f} to {high:.1f} deg" for low, high in np.degrees(ends))
-            never.append(f"the {joint} moves from {own}, the moments are known from {known}")
-    return never
-
-
-def _likely_cause(design: Design, reference: ReferenceTricycle) -> str:
-    """What a sketch in other axes has wrong: the change after which the joints lie best within the moments' range."""
-    likely = []
-    for cause, changes in _causes(design):
-        with suppress(AssemblyError):
-            turn = turning(design.with_linkage(**changes))
-            likely.append((_worst(turn, reference), cause))
-    excess, cause = min(likely, key=lambda pair: pair[0], default=(1.0, ""))
-    return f". Likely cause: {cause}" if excess < 1 else ""
-
-
-def _worst(turn: Turning, reference: ReferenceTricycle) -> float:
-    """Largest excess of a joint beyond the moments' range, in half ranges."""
-    return max(
-        float(np.abs(reference.excess(joint, angle)).max()) / reference.half_range(joint)
-        for joint, angle in turn.motion.joint_angle.items()
-    )
-
-
-def _causes(design: Design) -> Iterator[tuple[str, dict[str, Any]]]:
-    ground, arm, seat = design.linkage.ground, design.linkage.pivot_to_crank, design.linkage.seat_angle
-    both = "R1" if design.linkage.kind == "trt" else "R1 and R7"
-    other_ground = -ground.conjugate()
-    backwards = "x is backwards, so R1's x is usually negative"
-    yield f"{backwards}; here it has the wrong sign", {"ground": other_ground}
-    mirrored = {"ground": other_ground, "pivot_to_crank": -arm.conjugate()}
-    yield f"the rider faces +x in this sketch; {backwards}: change the sign of x in {both}", mirrored
-    flipped = {"ground": ground.conjugate(), "pivot_to_crank": arm.conjugate()}
-    yield f"y is down in this sketch; here it is up: change the sign of y in {both}", flipped
-    turned = {"ground": -ground, "pivot_to_crank": -arm}
-    yield f"x is forwards and y down in this sketch; change the signs of both in {both}", turned
-    yield (
-        f"the seat angle is measured from the other side; seat_angle = {180 - np.degrees(seat):g}",
-        {"seat_angle": np.pi - seat},
-    )
-    if design.linkage.branch == "right":
-        yield 'the rocker joint lies on the usual side; leave out branch = "right"', {"branch": "left"}

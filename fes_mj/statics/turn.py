@@ -22,7 +22,8 @@ from fes_mj.moments.torque_map import TorqueMap, torque_map
 from fes_mj.moments.uncertainty import power_weights, standard_deviation
 from fes_mj.statics.characteristics import motion_characteristics, power_characteristics
 from fes_mj.statics.equilibrium import equilibrium
-from fes_mj.statics.extrapolation import NO_MORE, Extrapolation, extrapolation, turning_in_range
+from fes_mj.statics.extrapolation import NO_MORE, Extrapolation, extrapolation
+from fes_mj.statics.validity import valid_speed
 
 # Trapezium rule over a turn; against 36,000 points the mean power changes by less than 1e-5 of itself.
 TURN_POINTS = 3600
@@ -154,9 +155,9 @@ def quasi_static(
     >>> fes_mj.quasi_static(fes_mj.load_design("d1"), fes_mj.load_moments("p1p2"))
     <QuasiStatic d1 p1p2: 31.14 W at 96.4 rpm>
     """
-    turning_in_range(design, moments.measured_on)
+    speed = valid_speed(design, moments, cadence)
     motion = kinematics.solve(design, np.linspace(0, 2 * np.pi, points, endpoint=False))
-    torque, speed = torque_map(moments), design.crank_speed(cadence)
+    torque = torque_map(moments)
     joint_moment = torque.along(motion, speed)
     return QuasiStatic(motion, torque, speed, joint_moment, *equilibrium(motion, joint_moment))
 

@@ -10,13 +10,13 @@ from fes_mj.common.units import RPM, turns_per_second
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.joints import JOINTS
 from fes_mj.linkage.kinematics import solve
-from fes_mj.linkage.turning import Obstacle
-from fes_mj.linkage.variables import COMPONENTS, VARIABLES, replaced
+from fes_mj.linkage.variables import COMPONENTS, replaced
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.torque_map import torque_map
 from fes_mj.statics.characteristics import motion_characteristics, power_characteristics
 from fes_mj.statics.cycles import Cycles, cycles
 from fes_mj.statics.equilibrium import virtual_work
+from fes_mj.statics.validity import obstacles
 from fes_mj.statics.work_table import WorkTable, uncertain_table
 from fes_mj.sweep.study import NAMES, Study
 
@@ -125,14 +125,8 @@ def _characteristics(design: Design, values: Columns, moments: JointMoments, sta
 
 def _reasons(turn: Cycles, rpm: NDArray[Any], count: int) -> NDArray[np.object_]:
     """Why `fes_mj static` refuses each of the points: the first reason that holds, "" if none does, shape (count,)."""
-    never = [
-        Obstacle(f"the {joint} never enters the range of the moments", never_inside)
-        for joint, never_inside in turn.outside[1].items()
-    ]
-    low, high = VARIABLES["cadence_rpm"].low, VARIABLES["cadence_rpm"].high
-    out_of_bounds = Obstacle(f"its cadence is not within {low:g} to {high:g} rpm", (rpm < low) | (rpm > high))
     why = np.full(count, "", object)
-    for reason, hindered in reversed([*turn.turning.obstacles, *never, out_of_bounds]):
+    for reason, hindered in reversed(obstacles(turn, rpm * RPM)):
         why[np.broadcast_to(hindered, count)] = reason
     return why
 

@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 
 from fes_mj.common.errors import InputError
+from fes_mj.common.units import RPM
 from fes_mj.linkage.design import SEXES, Linkage, Rider
 from fes_mj.linkage.design_file import load_design
 from fes_mj.linkage.inertia import DE_LEVA, FOOT_LENGTH
 from fes_mj.linkage.legs import LEGS
-from fes_mj.linkage.variables import replaced
+from fes_mj.linkage.variables import crank_speed, replaced
 
 
 def test_words_that_nothing_is_known_of_are_refused_where_they_are_said() -> None:
@@ -27,14 +28,14 @@ def test_words_that_nothing_is_known_of_are_refused_where_they_are_said() -> Non
 
 @pytest.mark.parametrize("cadence", [0.0, -6.0, math.nan, math.inf])
 def test_a_cadence_at_which_nothing_turns_is_refused(cadence: float) -> None:
-    with pytest.raises(InputError, match=rf"d1: cadence is {cadence:g}"):
-        load_design("d1").crank_speed(cadence)
+    with pytest.raises(InputError, match=rf"d1: cadence is {cadence / RPM:.4g} rpm"):
+        crank_speed(load_design("d1"), cadence)
 
 
 def test_a_cadence_that_is_not_given_is_the_designs_own() -> None:
     design = load_design("d1")
-    assert design.crank_speed() == design.linkage.cadence
-    assert design.crank_speed(6.0) == 6.0
+    assert crank_speed(design) == design.linkage.cadence
+    assert crank_speed(design, 6.0) == 6.0
 
 
 def test_the_designs_of_a_batch_are_those_that_it_was_made_of() -> None:

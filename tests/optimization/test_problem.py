@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import fes_mj
-from fes_mj.cli.options import crank_speed
 from fes_mj.linkage.design_file import design_toml
 from fes_mj.linkage.turning import turning
+from fes_mj.linkage.variables import crank_speed
 from fes_mj.optimization.optimize import run_searches
 from fes_mj.optimization.problem import LENGTH_COUNT, Problem
 from fes_mj.statics.cycles import joint_speeds
@@ -105,7 +105,7 @@ def test_whatever_is_feasible_is_accepted_by_the_other_commands(
     for variables in [*nine.x[nine.feasible][:20], *ten.x[ten.feasible][:20], *driven]:
         file.write_text(design_toml(problem.design(variables, "found")))
         design = fes_mj.load_design(file)
-        cadence = crank_speed(None, design)
+        cadence = crank_speed(design)
         assert math.isfinite(fes_mj.quasi_static(design, moments, points=120).power_mean)
         fes_mj.build_mjcf(design, cadence=cadence, timestep=0.001)
 

@@ -1,5 +1,7 @@
 """The generated model: exact start, planarity, names, and what is written is what is loaded."""
 
+import math
+
 import mujoco
 import numpy as np
 import pytest
@@ -61,3 +63,22 @@ def test_drives_do_the_work_of_virtual_work(design: fes_mj.Design) -> None:
         servo = data.actuator("crank_servo").force[0]
         expected[model.joint("crank").dofadr[0]] = servo
         assert data.qfrc_actuator == pytest.approx(expected)
+
+
+@pytest.mark.parametrize("offset", [1e-9, 3e-7, 9e-7])
+@pytest.mark.parametrize(("gamma_deg", "near"), [(90.0, 0.0), (0.0, math.sqrt(2) - 1), (180.0, 1.0)])
+def test_no_offset_is_too_small_for_the_compiler(offset: float, gamma_deg: float, near: float) -> None:
+    """The pedal beside the rocker joint, beside the coupler's centre of mass; and that beside the rocker joint."""
+    coupler = 0.20
+    linkage = fes_mj.Linkage(
+        "cdt", -0.55 + 0.2j, 0.06, 0.08, -0.3 + 0j, near * coupler + offset, coupler, 0.2, math.radians(gamma_deg)
+    )
+    design = fes_mj.Design("small", linkage, fes_mj.Rider(0.5, 0.5))
+    model = build_mjcf(design).compile()
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    mujoco.mj_forward(model, data)
+    assert np.abs(data.efc_pos[data.efc_type == mujoco.mjtConstraint.mjCNSTR_EQUALITY]).max() < 1e-12
+    motion, part = solve(design, np.zeros(1)), inertias(design)["coupler"]
+    centre = motion.body_point("coupler", part.centre).value[0]
+    assert data.xipos[model.body("coupler").id][[0, 2]] == pytest.approx([centre.real, centre.imag], abs=1e-12)
