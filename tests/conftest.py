@@ -1,9 +1,13 @@
 """Designs, moments and a study that many tests share."""
 
 import os
+import shutil
 import signal
 from pathlib import Path
 from typing import Any
+
+# Before numpy: a worker for every core runs these tests, and threads of its own would only wait for the others'.
+os.environ |= {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 
 import numpy as np
 import pytest
@@ -12,6 +16,7 @@ from hypothesis import settings
 import fes_mj
 from fes_mj.linkage.design_file import DESIGNS
 from fes_mj.moments.joint_moments import GROUPS
+from fes_mj.sweep.study import load_study
 from fes_mj.sweep.sweep import Sweep
 
 # Tests that run in the background or under nohup ignore these; the processes that they start must not.
@@ -63,15 +68,34 @@ gear_ratio = [1.0, 2.0]
 """
 
 
-@pytest.fixture
-def study(tmp_path: Path) -> Path:
+def write_study(folder: Path) -> Path:
     """A study with a design and moments of its own beside it."""
     source = Path(fes_mj.__file__).parent / "data"
-    (tmp_path / "mine.toml").write_text((source / "designs/identified/d2.toml").read_text())
-    (tmp_path / "mine.csv").write_text("crank_angle_deg,knee_Nm,hip_Nm\n0,1,2\n90,20,-3\n200,-5,4\n")
-    path = tmp_path / "study.toml"
+    (folder / "mine.toml").write_text((source / "designs/identified/d2.toml").read_text())
+    (folder / "mine.csv").write_text("crank_angle_deg,knee_Nm,hip_Nm\n0,1,2\n90,20,-3\n200,-5,4\n")
+    path = folder / "study.toml"
     path.write_text(GRID)
     return path
+
+
+@pytest.fixture
+def study(tmp_path: Path) -> Path:
+    return write_study(tmp_path)
+
+
+@pytest.fixture(scope="session")
+def finished_study(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of such a study, swept to its end into `out`: to be copied."""
+    folder = tmp_path_factory.mktemp("finished")
+    Sweep(load_study(write_study(folder)), folder / "out").run()
+    return folder
+
+
+@pytest.fixture
+def done(finished_study: Path, tmp_path: Path) -> Sweep:
+    """A finished sweep of 21 chunks, in `out`, of the fixture `study`."""
+    shutil.copytree(finished_study, tmp_path, dirs_exist_ok=True)
+    return Sweep(load_study(tmp_path / "study.toml"), tmp_path / "out")
 
 
 def rows_of(sweep: Sweep) -> list[dict[str, Any]]:

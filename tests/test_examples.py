@@ -153,6 +153,24 @@ def test_replay_moments_notices_wrong_moments(tmp_path: Path, capsys: pytest.Cap
     assert abs(replay(tmp_path / "model.xml", capsys) / expected - 1) > 0.1
 
 
+@pytest.fixture(scope="module")
+def wrong_files(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with models and tables that are not what the example needs."""
+    folder = tmp_path_factory.mktemp("wrong")
+    for name, variants in {"model": [], "passive": ["passive"], "free": ["free"]}.items():
+        flags = [flag for variant in variants for flag in ("--variant", variant)]
+        assert run(["export", "trt", "-o", str(folder / f"{name}.xml"), *flags]) == 0
+    (folder / "folder").mkdir()
+    model = (folder / "model.xml").read_text()
+    tables = {"words": "a,b\n1,two\n", "empty": "", "other": "crank_angle_deg,knee_Nm,hip_Nm\n0,1,2\n"}
+    for name, table in tables.items():
+        (folder / f"{name}.xml").write_text(model)
+        (folder / f"{name}.csv").write_text(table)
+    scene = (ROOT / "mjcf/trt/scene.xml").read_text().replace("trt.xml", "model.xml")
+    (folder / "scene.xml").write_text(scene)
+    return folder
+
+
 @pytest.mark.parametrize(
     ("file", "said"),
     [
@@ -169,21 +187,9 @@ def test_replay_moments_notices_wrong_moments(tmp_path: Path, capsys: pytest.Cap
     ],
 )
 def test_replay_moments_of_a_wrong_file_is_one_message(
-    file: str, said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    file: str, said: str, wrong_files: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    for name, variants in {"model": [], "passive": ["passive"], "free": ["free"]}.items():
-        flags = [flag for variant in variants for flag in ("--variant", variant)]
-        assert run(["export", "trt", "-o", str(tmp_path / f"{name}.xml"), *flags]) == 0
-    (tmp_path / "folder").mkdir()
-    model = (tmp_path / "model.xml").read_text()
-    tables = {"words": "a,b\n1,two\n", "empty": "", "other": "crank_angle_deg,knee_Nm,hip_Nm\n0,1,2\n"}
-    for name, table in tables.items():
-        (tmp_path / f"{name}.xml").write_text(model)
-        (tmp_path / f"{name}.csv").write_text(table)
-    scene = (ROOT / "mjcf/trt/scene.xml").read_text().replace("trt.xml", "model.xml")
-    (tmp_path / "scene.xml").write_text(scene)
-    capsys.readouterr()
-    code, out, err = replayed(*([file] if file else []), folder=tmp_path, capsys=capsys)
+    code, out, err = replayed(*([file] if file else []), folder=wrong_files, capsys=capsys)
     assert (code, out, err.count("\n")) == (2, "", 1)
     assert err.startswith("replay_moments.py: ")
     assert said in err

@@ -17,6 +17,8 @@ from fes_mj.optimization.limits import DEFAULT
 from fes_mj.optimization.search import Result
 
 QUICK = ["--budget", "6000", "--searches", "1", "--seed", "2"]
+# from a feasible start: where the file and not the search is looked at
+FROM_D1 = ["--start", "d1", "--speeds-of", "d1", "--budget", "1000", "--seed", "2"]
 
 
 def test_the_winner_is_what_the_other_commands_see(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -104,7 +106,7 @@ def test_a_front_beside_the_design(tmp_path: Path, capsys: pytest.CaptureFixture
 def test_own_moments_have_no_error_bar(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     moments = tmp_path / "mine.csv"
     moments.write_text("crank_angle_deg,knee_Nm,hip_Nm\n0,5,1\n60,25,2\n180,5,-1\n270,-5,0\n")
-    assert run(["optimize", "crt", "--moments", str(moments), *QUICK, "--json"]) == 0
+    assert run(["optimize", "cdt", "--moments", str(moments), *FROM_D1, "--searches", "1", "--json"]) == 0
     content = json.loads(capsys.readouterr().out)
     assert content["gain_W"] is None
     assert content["group"] == "mine"
@@ -241,10 +243,10 @@ def test_what_was_found_stays_when_a_later_step_fails(
         raise error
 
     out = tmp_path / "best.toml"
-    command = ["optimize", "cdt", *QUICK, "-o", str(out), "--report", str(tmp_path / "page.html")]
+    command = ["optimize", "cdt", *FROM_D1, "--searches", "1", "-o", str(out)]
     with monkeypatch.context() as broken:
         broken.setattr(step, fail)
-        assert run(command) == code
+        assert run([*command, "--report", str(tmp_path / "page.html")]) == code
     assert str(error.args[-1]) in capsys.readouterr().err
     best = out.read_bytes()
     assert run(command) == 0
@@ -255,7 +257,7 @@ def test_ctrl_c_says_what_was_found_and_the_same_command_goes_on(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     out, finish = tmp_path / "best.toml", Findings.finish
-    command = ["optimize", "cdt", "--budget", "3000", "--searches", "3", "--seed", "2", "-o", str(out), "--json"]
+    command = ["optimize", "cdt", *FROM_D1, "--searches", "3", "-o", str(out), "--json"]
     assert run(command) == 0
     undisturbed, best = capsys.readouterr().out, out.read_bytes()
     out.unlink()

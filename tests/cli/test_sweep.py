@@ -62,18 +62,16 @@ def test_a_study_without_turning_points_has_no_best(tmp_path: Path, capsys: pyte
     ],
 )
 def test_no_scheduler_loses_nothing(
-    study: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, address: str
+    done: Sweep, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, address: str
 ) -> None:
     pytest.importorskip("distributed")
     monkeypatch.setattr("fes_mj.common.parallel.PATIENCE", "1s")
-    folder = tmp_path / "out"
-    sweep = Sweep(load_study(study), folder)
-    sweep.run()
-    sweep.path(1).unlink()
-    before = sorted(path.name for path in folder.iterdir())
-    assert run(["sweep", str(study), "-o", str(folder), f"--cluster={address}"]) == 2
+    done.path(1).unlink()
+    before = sorted(path.name for path in done.folder.iterdir())
+    study = done.folder.with_name("study.toml")
+    assert run(["sweep", str(study), "-o", str(done.folder), f"--cluster={address}"]) == 2
     assert f"--cluster {address}: no Dask scheduler" in capsys.readouterr().err.replace("\n", " ")
-    assert sorted(path.name for path in folder.iterdir()) == before
+    assert sorted(path.name for path in done.folder.iterdir()) == before
 
 
 def test_a_cadence_for_all_points(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

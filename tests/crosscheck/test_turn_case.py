@@ -24,7 +24,9 @@ def test_the_simulation_agrees_with_its_references(
     assert result.simulation.power_mean == pytest.approx(result.static.power_mean, rel=5e-4)
 
 
-@pytest.mark.parametrize("rpm", [10, 40, 120, 200])
+@pytest.mark.parametrize(
+    "rpm", [10, pytest.param(40, marks=pytest.mark.long), pytest.param(120, marks=pytest.mark.long), 200]
+)
 def test_the_default_step_suits_every_cadence(design: fes_mj.Design, rpm: float) -> None:
     result = Case(design, fes_mj.load_moments("p1p2"), cadence=rpm * np.pi / 30)
     assert result.agrees, [check for check in result.checks if not check.ok]

@@ -31,7 +31,10 @@ def test_a_moved_seat_moves_the_hip_and_nothing_else(design: fes_mj.Design) -> N
 
 
 @pytest.mark.parametrize("name", ["r1", "r2", "d1", "d2"])
-@pytest.mark.parametrize(("who", "percentile"), [("man", 50), ("woman", 5), ("man", 95)])
+@pytest.mark.parametrize(
+    ("who", "percentile"),
+    [("man", 50), pytest.param("woman", 5, marks=pytest.mark.long), pytest.param("man", 95, marks=pytest.mark.long)],
+)
 def test_another_search_finds_no_better_seat(name: str, who: str, percentile: float) -> None:
     design, table = fes_mj.load_design(name), WorkTable.of(fes_mj.load_moments("p1p2"))
     rider = populations()[who].rider(percentile)

@@ -117,7 +117,8 @@ def test_tolerance_against_one_design_at_a_time() -> None:
         except fes_mj.AssemblyError:
             continue
         count += 1
-        powers.append(quasi_static(built, fes_mj.load_moments("p1p2"), points=360).power_mean)
+        if count <= 20:
+            powers.append(quasi_static(built, MOMENTS, points=360).power_mean)
     share = count / 400
     assert 0.2 < share < 0.98
     # four standard deviations of a share of 400

@@ -1,7 +1,7 @@
 """What a row says, against what the quasi-static solver and the simulation say of the same design."""
 
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 import pytest
@@ -13,8 +13,11 @@ from fes_mj.linkage.variables import replaced
 from fes_mj.statics.turn import QuasiStatic
 from fes_mj.sweep.evaluation import column_types, evaluate
 from fes_mj.sweep.study import load_study
+from tests.conftest import write_study
 
 WIDE = """
+[study]
+characteristics = true
 [grid]
 design = ["trt", "r2", "d1"]
 moments = ["p1p2", "mine.csv"]
@@ -25,6 +28,9 @@ thigh = [0.40, 0.60]
 seat_angle = [0, 60]
 R1x = [-0.80, -0.55]
 """
+
+
+Wide: TypeAlias = list[tuple[dict[str, Any], QuasiStatic | InputError]]
 
 
 def evaluated(study: Path, text: str) -> list[dict[str, Any]]:
@@ -46,10 +52,16 @@ def alone(row: dict[str, Any], study: Path) -> QuasiStatic | InputError:
         return error
 
 
-def test_rows_say_what_the_solver_says(study: Path) -> None:
+@pytest.fixture(scope="module")
+def wide(tmp_path_factory: pytest.TempPathFactory) -> Wide:
+    """The rows of a study, and of each the result of its design alone."""
+    study = write_study(tmp_path_factory.mktemp("wide"))
+    return [(row, alone(row, study)) for row in evaluated(study, WIDE)]
+
+
+def test_rows_say_what_the_solver_says(wide: Wide) -> None:
     said = set()
-    for row in evaluated(study, WIDE):
-        single = alone(row, study)
+    for row, single in wide:
         assert row["turns"] == (not isinstance(single, fes_mj.AssemblyError))
         said.add(row["why"])
         if isinstance(single, InputError):
@@ -123,12 +135,10 @@ def test_a_run_of_too_many_steps_costs_one_row(study: Path) -> None:
     assert good["simulated_power_mean_W"] == pytest.approx(good["power_mean_W"], rel=1e-3)
 
 
-def test_characteristics_are_those_of_single_designs(study: Path) -> None:
+def test_characteristics_are_those_of_single_designs(wide: Wide) -> None:
     """Over 720 angles instead of 3600: shares are right to an angle at each end of a zone."""
-    rows = evaluated(study, WIDE.replace("[grid]", "[study]\ncharacteristics = true\n[grid]", 1))
     compared = 0
-    for row in rows:
-        single = alone(row, study)
+    for row, single in wide:
         if isinstance(single, InputError):
             assert np.isnan([row["inactive_zone_share"], row["length_m"], row["energy_fluctuation"]]).all()
             continue

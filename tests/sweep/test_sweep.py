@@ -108,14 +108,6 @@ def test_a_folder_of_something_else_is_left_alone(study: Path, tmp_path: Path) -
         Sweep(load_study(study), tmp_path).run()
 
 
-@pytest.fixture
-def done(study: Path, tmp_path: Path) -> Sweep:
-    """A finished sweep of 21 chunks."""
-    sweep = Sweep(load_study(study), tmp_path / "out")
-    sweep.run()
-    return sweep
-
-
 def _another_study(study: Path) -> Sweep:
     study.write_text(GRID.replace("seed = 3", "seed = 4"))
     other = Sweep(load_study(study), study.parent / "other")

@@ -16,7 +16,7 @@ def test_the_observed_order_is_the_slope() -> None:
     assert math.isnan(observed_order(sizes, [1, 0, math.inf]))
 
 
-@pytest.mark.parametrize("name", ["trt", "r2", "d1"])
+@pytest.mark.parametrize("name", [pytest.param("trt", marks=pytest.mark.long), "r2", "d1"])
 def test_both_axes_converge_to_statics(name: str) -> None:
     """Slope and size: an order alone may converge to the wrong answer."""
     result = refine(case_of(name))
