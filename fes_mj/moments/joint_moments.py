@@ -78,7 +78,7 @@ class JointMoments(Brief):
             )
         variance, directions = np.linalg.eigh(self.covariance)
         large = variance > _NEGLIGIBLE * variance[-1]
-        return PerJoint(*np.split(directions[:, large] * np.sqrt(variance[large]), 2))
+        return PerJoint(*map(np.ascontiguousarray, np.split(directions[:, large] * np.sqrt(variance[large]), 2)))
 
     def __getstate__(self) -> dict[str, Any]:
         """With all that linear algebra makes of them: its last bits depend on threads, a worker process has fewer."""

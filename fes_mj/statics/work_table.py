@@ -87,6 +87,9 @@ def uncertain_table(moments: JointMoments) -> WorkTable:
     deviations, torque = moments.deviations, torque_map(moments)
 
     def sets(joint: str, angle: FloatArray) -> FloatArray:
-        return np.column_stack([torque.at_source(joint, angle), fourier(angle) @ deviations[joint]])
+        # not a product of matrices, the last bits of which depend on threads: a worker process has fewer
+        return np.column_stack(
+            [torque.at_source(joint, angle), np.einsum("ij,jk->ik", fourier(angle), deviations[joint])]
+        )
 
     return WorkTable.tabulated(sets, moments.measured_on)

@@ -99,10 +99,10 @@ def test_whatever_is_feasible_is_accepted_by_the_other_commands(
         high[9] = 10.0
     limits = replace(problem.limits, **changes, search=np.column_stack([low, high]))
     problem = replace(problem, limits=limits, joint_speed=problem.joint_speed.map(lambda speed: 4 * speed))
-    x = np.random.default_rng(0).uniform(low, high, (20_000, LENGTH_COUNT + 1))
+    x = np.random.default_rng(0).uniform(low, high, (10_000, LENGTH_COUNT + 1))
     nine, ten = problem.evaluate(x[:, :LENGTH_COUNT]), problem.evaluate(x)
-    driven = [result.x for result in run_searches(problem, "differential-evolution", searches=2, budget=8000)]
-    for variables in [*nine.x[nine.feasible][:20], *ten.x[ten.feasible][:20], *driven]:
+    driven = [result.x for result in run_searches(problem, "differential-evolution", searches=1, budget=4000)]
+    for variables in [*nine.x[nine.feasible][:10], *ten.x[ten.feasible][:10], *driven]:
         file.write_text(design_toml(problem.design(variables, "found")))
         design = fes_mj.load_design(file)
         cadence = crank_speed(design)

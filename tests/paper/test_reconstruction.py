@@ -28,19 +28,23 @@ def posteriors() -> dict[str, Posterior]:
     return reconstruct(load_evidence()).posteriors
 
 
+@pytest.fixture(scope="module")
+def chosen() -> Hyperparameters:
+    return choose_hyperparameters(load_evidence())
+
+
 @pytest.mark.parametrize("group", GROUPS)
-def test_what_ships_is_what_evidence_and_text_give(group: str) -> None:
+def test_what_ships_is_what_evidence_and_text_give(group: str, chosen: Hyperparameters) -> None:
     """The tool's curves again. Rounding may carry one curve in a thousand over a bound of the text, not ten."""
     evidence = load_evidence()
-    curves, _ = allowed_curves(of_group(evidence, group), group, choose_hyperparameters(evidence), 1000)
+    curves, _ = allowed_curves(of_group(evidence, group), group, chosen, 1000)
     shipped = sampled_coefficients(group)
     assert sum(np.abs(shipped - curve).max(axis=1).min() < 1e-3 for curve in curves) >= 990
 
 
-def test_the_likelihood_has_one_maximum_inside_its_bounds() -> None:
+def test_the_likelihood_has_one_maximum_inside_its_bounds(chosen: Hyperparameters) -> None:
     """On a grid beyond the bound of the length no prior is more likely."""
     evidence = load_evidence()
-    chosen = choose_hyperparameters(evidence)
     systems = [System.of(of_group(evidence, group)) for group in GROUPS]
     best = sum(system.log_likelihood(chosen) for system in systems)
     for length in np.geomspace(0.2, 2.0, 25):
