@@ -2,6 +2,7 @@
 
 import json
 import os
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -100,3 +101,15 @@ def test_a_video_does_not_replace_an_input(tmp_path: Path) -> None:
     (moments := tmp_path / "m.mp4").write_text("crank_angle_deg,knee_Nm,hip_Nm\n0,1,2\n90,20,-3\n")
     assert run(["simulate", "d1", "--moments", str(moments), "--render", str(moments)]) == 2
     assert moments.read_text().startswith("crank")
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems always have a screen")
+@pytest.mark.parametrize("display", ["", ":99"])
+def test_view_without_a_screen_is_one_message(
+    display: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Also where a screen is named that does not answer."""
+    monkeypatch.setenv("DISPLAY", display)
+    monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
+    assert run(["simulate", "d1", "-q", "--view"]) == 3
+    assert capsys.readouterr().err.startswith("fes_mj: the viewer needs a screen and there is none; make a video")

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from fes_mj.cli.app import run
+from fes_mj.common.checks import definitions
 from fes_mj.linkage.design_file import load_design
 from fes_mj.simulation.time_step import steps_per_turn
 from tests.cli.conftest import answer
@@ -115,3 +116,29 @@ def test_no_report_replaces_an_input(
     assert run(["validate", "d1", "--moments", str(moments), option, str(moments)]) == 2
     assert "which this command reads" in capsys.readouterr().err
     assert moments.read_text().startswith("crank")
+
+
+def test_every_check_of_simulate_can_be_explained(capsys: pytest.CaptureFixture[str]) -> None:
+    _, content = answer(capsys, "simulate", "r1")
+    for check in content["checks"]:
+        assert run(["validate", "--explain", check["name"]]) == 0
+        assert run(["validate", "--explain", check["name"].replace("_", " ").upper()]) == 0
+        text = capsys.readouterr().out
+        assert "guards against" in text
+        assert "usually broken by" in text
+
+
+def test_every_check_printed_by_simulate_is_named_as_explain_knows_it(capsys: pytest.CaptureFixture[str]) -> None:
+    run(["simulate", "r1"])
+    lines = capsys.readouterr().out.split("Checks")[1].splitlines()
+    names = [line.split("  ")[1].strip() for line in lines if line.rstrip().endswith("ok")]
+    assert len(names) >= 6
+    assert set(names) <= set(definitions())
+
+
+def test_all_are_listed_and_an_unknown_one_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["validate", "--explain", "all"]) == 0
+    text = capsys.readouterr().out
+    assert all(name in text for name in definitions())
+    assert run(["validate", "--explain", "loopgap"]) == 2
+    assert capsys.readouterr().err == "fes_mj: loopgap: no such check; did you mean loop_gap?\n"

@@ -6,7 +6,10 @@ import pytest
 
 from fes_mj.common.checks import definitions
 from fes_mj.common.reading import read_toml
+from fes_mj.verification.faults import inject
 from fes_mj.verification.mistakes import EDITS, RIDE_STEPS, STEPS, faults
+from fes_mj.verification.suite import ride_checks
+from tests.verification.conftest import case_of
 
 ROOT = Path(__file__).parents[2]
 
@@ -25,3 +28,33 @@ PROVED = [name for name, definition in definitions().items() if definition.kind 
 def test_every_check_that_is_no_benchmark_guards_against_a_fault(name: str) -> None:
     """That guards notice is test_faults' to say."""
     assert name in GUARDS
+
+
+CLEARLY = 3  # times its limit is a guard's value at least
+RIDE_FAULTS = [fault for fault in faults() if fault.ride_steps]
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(
+    "source",
+    [
+        "d1",
+        *("trt", "r1", "r2", "d2"),
+        str(ROOT / "results" / "optimization" / "r2-caution-1.toml"),
+    ],
+)
+def test_the_guard_of_a_ride_notices_by_far(source: str) -> None:
+    case = case_of(source)
+    checks = [*ride_checks(case)]
+    assert [check for check in checks if not check.ok] == []
+    baseline = {check.name: True for check in checks}
+    for fault in RIDE_FAULTS:
+        failed = inject(fault, case, baseline).failed
+        for guard in fault.guards:
+            assert max(check.factor for check in failed if check.name == guard) >= CLEARLY, fault.name
+
+
+def test_every_check_of_a_ride_guards() -> None:
+    """The rides' alone: the loop gap has guards of its own."""
+    guards = {guard for fault in RIDE_FAULTS for guard in fault.guards}
+    assert guards == {"ride_verdict", "ride_speed", "ride_settled", "ride_power", "ride_energy"}
