@@ -48,8 +48,8 @@ def main() -> None:
     """Measure in turn, print, write."""
     rounds = [{name: seconds(command) for name, command in CANDIDATES.items()} for _ in range(ROUNDS + 1)][1:]
     check = [float(subprocess.run([PYTHON, "-c", MEASURE], check=True, capture_output=True).stdout) for _ in range(3)]
-    bare = np.array([each["bare interpreter"] for each in rounds])
-    ratio = {name: float(np.median([each[name] for each in rounds] / bare)) for name in CANDIDATES}
+    bare = np.array([times["bare interpreter"] for times in rounds])
+    ratio = {name: float(np.median([times[name] for times in rounds] / bare)) for name in CANDIDATES}
     simulation = float(np.median(check) / np.median(bare))
     # importing mujoco imports numpy
     parts = ratio["import mujoco"] + simulation

@@ -68,11 +68,11 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "v.mp4"
         for _ in range(ROUNDS + 1):
-            for way in (plain, ours):
+            for encode in (plain, ours):
                 start = time.perf_counter()
-                way(path)
-                rates.setdefault(way.__name__, []).append(count / (time.perf_counter() - start))
-                sizes[way.__name__] = path.stat().st_size
+                encode(path)
+                rates.setdefault(encode.__name__, []).append(count / (time.perf_counter() - start))
+                sizes[encode.__name__] = path.stat().st_size
     measured = {name: np.array(values[1:]) for name, values in rates.items()}
     report: dict[str, Any] = {
         name: {
@@ -83,10 +83,10 @@ def main() -> None:
         for name, values in measured.items()
     }
     rows = [
-        (name, f"{each['median_frames_per_s']:.1f} frames/s", f"{each['ratio_to_plain']:.2f}", f"{each['size_kB']:.0f}")
-        for name, each in report.items()
+        (name, f"{row['median_frames_per_s']:.1f} frames/s", f"{row['ratio_to_plain']:.2f}", f"{row['size_kB']:.0f}")
+        for name, row in report.items()
     ]
-    print_table(f"A video of {count} frames, shown twice", ("way", "rate", "ratio", "size, kB"), rows)
+    print_table(f"A video of {count} frames, shown twice", ("video", "rate", "ratio", "size, kB"), rows)
     record("video", {"rates": report})
 
 

@@ -33,8 +33,8 @@ def roll_out(design: str = "r2", copies: int = COPIES, duration: float = DURATIO
     model = spec.compile()
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, 0)
-    told, behind = drive(chosen, moments).command, POINTS // 2
-    table = np.array([np.roll(told[joint], behind if leg == "left" else 0) for leg, joint in JOINTS])
+    command, behind = drive(chosen, moments).command, POINTS // 2
+    table = np.array([np.roll(command[joint], behind if leg == "left" else 0) for leg, joint in JOINTS])
     assert [model.actuator(i).name for i in range(model.nu)] == [f"{leg}_{joint}" for leg, joint in JOINTS]
     crank = int(model.joint("crank").qposadr[0])
     put, commands, kept = mjx.put_model(model), jnp.asarray(table), float(np.exp(-model.opt.timestep / LAG))
@@ -52,7 +52,7 @@ def roll_out(design: str = "r2", copies: int = COPIES, duration: float = DURATIO
         return state.qpos, state.qvel
 
     leads = np.linspace(-np.pi / 2, np.pi, copies)
-    qpos, qvel = (np.asarray(each) for each in jax.jit(jax.vmap(ride))(jnp.asarray(leads)))
+    qpos, qvel = (np.asarray(state) for state in jax.jit(jax.vmap(ride))(jnp.asarray(leads)))
     names = [model.sensor(i).name for i in range(model.nsensor)]
     gaps = []
     for position in qpos:
@@ -68,14 +68,14 @@ def roll_out(design: str = "r2", copies: int = COPIES, duration: float = DURATIO
 
 
 if __name__ == "__main__":
-    found, cadence = roll_out(), load_design("r2").linkage.cadence
-    best = int(np.argmax(found["distance"]))
-    for lead, distance in zip(found["lead"][::7], found["distance"][::7], strict=True):
+    result, cadence = roll_out(), load_design("r2").linkage.cadence
+    best = int(np.argmax(result["distance"]))
+    for lead, distance in zip(result["lead"][::7], result["distance"][::7], strict=True):
         print(f"lead {np.degrees(lead):6.1f} deg: {distance:.3f} m")
     lead, distance, trail = (
-        np.degrees(found["lead"][best]),
-        found["distance"][best],
+        np.degrees(result["lead"][best]),
+        result["distance"][best],
         np.degrees(np.arctan(LAG * cadence)),
     )
     print(f"best of {COPIES}: {lead:.0f} deg, {distance:.3f} m in {DURATION:g} s; such a lag trails by {trail:.0f} deg")
-    print(f"loops open by {found['loop_gap'].max():.1e} m at most")
+    print(f"loops open by {result['loop_gap'].max():.1e} m at most")

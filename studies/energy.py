@@ -76,7 +76,7 @@ def move_freely(model: mujoco.MjModel, duration: float = DURATION) -> Freely:
     mujoco.mj_resetDataKeyframe(model, data, 0)
     crank, steps = data.joint("crank"), round(duration / model.opt.timestep)
     sensors = [model.sensor(i) for i in range(model.nsensor)]
-    gaps = np.array([each.adr[0] + np.arange(3) for each in sensors if each.name.endswith("_gap")])
+    gaps = np.array([sensor.adr[0] + np.arange(3) for sensor in sensors if sensor.name.endswith("_gap")])
     energies, largest, fastest = [energy(model, data)], 0.0, abs(float(crank.qvel[0]))
     for step in range(1, steps + 1):
         mujoco.mj_step(model, data)
@@ -105,8 +105,8 @@ def row(name: str, variants: tuple[str, ...]) -> tuple[Any, ...]:
     others = []
     for integrator in INTEGRATORS.values():
         model.opt.integrator = integrator
-        found = move_freely(model)
-        others.append(100 * found.drift if found.drift < 1 else None)  # nor where it is not a number
+        motion = move_freely(model)
+        others.append(100 * motion.drift if motion.drift < 1 else None)  # nor where it is not a number
     described = (own.start, own.turns, own.fastest / RPM, 1e3 * own.timestep, 100 * own.drift, 1e6 * own.gap)
     return (name.upper(), " ".join(variants), *described, *others, "ok" if own.ok else "FAILED")
 

@@ -61,7 +61,7 @@ def fitted_speeds(design: Design) -> PerJoint[np.ndarray]:
     thigh, shank = riders()
     seats, _ = best_seats(design, thigh, shank, TABLE)
     batch = design.with_rider(thigh=thigh[:, None], shank=shank[:, None])
-    turn = cycles(Seats(*(each[:, None] for each in seats)).moved(batch), TABLE)
+    turn = cycles(Seats(*(part[:, None] for part in seats)).moved(batch), TABLE)
     return turn.joints.map(lambda joint: np.degrees(joint.travel) * turns_per_second(design.linkage.cadence))
 
 
@@ -78,7 +78,7 @@ def problem(target: str, statistic: str) -> Problem:
 def row(made_for: str, design: Design, printed: Design) -> Row:
     """Measure a design."""
     population = fit_population(design, MOMENTS, samples=SAMPLES, seed=SAMPLE_SEED)
-    powers = np.concatenate([np.nan_to_num(each.fitted) for each in population.riders.values()])
+    powers = np.concatenate([np.nan_to_num(rider.fitted) for rider in population.riders.values()])
     paper = fit_seat(design, Rider(), MOMENTS)
     own = {key: value for key, value in paper.summary().items() if key.startswith("power")}
     content = {
@@ -87,11 +87,13 @@ def row(made_for: str, design: Design, printed: Design) -> Row:
         "power_people_mean_W": float(powers.mean()),
         "power_people_p10_W": float(np.percentile(powers, 10)),
         "can_ride": float(np.mean(powers > 0)),
-        "can_ride_as_drawn": float(np.mean([np.isfinite(each.unmoved).mean() for each in population.riders.values()])),
+        "can_ride_as_drawn": float(
+            np.mean([np.isfinite(rider.unmoved).mean() for rider in population.riders.values()])
+        ),
         "power_paper_rider_fitted_W": own["power_mean_W"],
         "power_paper_rider_drawn_W": own["power_unmoved_W"],
         "paper_rider_seat": seat_text(paper.seat),
-        **{f"{joint}_speed_max_deg_s": float(each.max()) for joint, each in fitted_speeds(design).items()},
+        **{f"{joint}_speed_max_deg_s": float(speed.max()) for joint, speed in fitted_speeds(design).items()},
         "map_error_W": population.map_error,
     }
     return Row(made_for, design, assess(design, printed, MOMENTS), content)
@@ -100,23 +102,23 @@ def row(made_for: str, design: Design, printed: Design) -> Row:
 def rows(target: str) -> list[Row]:
     """The printed design, its successor for the paper's rider, and those for people."""
     printed = load_design(target)
-    found = [row("the paper's rider (printed)", printed, printed)]
+    people = [row("the paper's rider (printed)", printed, printed)]
     own = FOLDER / f"{target}-caution-0.toml"
-    found.append(row("the paper's rider", load_design(own), printed))
+    people.append(row("the paper's rider", load_design(own), printed))
     for statistic, words in STATISTICS.items():
         task = problem(target, statistic)
         best = run_searches(task, "cma-es", searches=SEARCHES, budget=BUDGET, seed=2, workers=WORKERS)
         design = task.design(best[0].x, f"{target}-{statistic}")
         write_text(FOLDER / f"{design.name}.toml", design_toml(design, "Found by studies/people.py."))
-        found.append(row(f"people, {words}", design, printed))
-        found[-1].content["power_within_speeds_W"] = [result.merit for result in best]
-        print(found[-1].content, flush=True)
-    return found
+        people.append(row(f"people, {words}", design, printed))
+        people[-1].content["power_within_speeds_W"] = [result.merit for result in best]
+        print(people[-1].content, flush=True)
+    return people
 
 
-def markdown(found: dict[str, list[Row]]) -> str:
+def markdown(by_target: dict[str, list[Row]]) -> str:
     """The page."""
-    every = [each for group in found.values() for each in group]
+    every = [row for group in by_target.values() for row in group]
     names = VARIED
     dimensions = {"design": "", **dict.fromkeys(names, ".3f")}
     parts = [
@@ -130,14 +132,14 @@ def markdown(found: dict[str, list[Row]]) -> str:
         "margin. Made for the paper's rider: comparison.md, caution 0, which has half a degree more of joint range "
         "and was not asked for the speeds of others. Knee and hip speed: largest mean of the absolute, among the "
         "riders who stand for the sample, seats moved.",
-        Table("What people get", COLUMNS, [_cells(each) for each in every]).markdown().strip(),
+        Table("What people get", COLUMNS, [_cells(row) for row in every]).markdown().strip(),
         "## What the successors gain and lose",
-        "\n".join(line for group in found.values() for line in _gains(group)),
-        _degenerate([each.design for each in every]),
+        "\n".join(line for group in by_target.values() for line in _gains(group)),
+        _degenerate([row.design for row in every]),
         Table(
             "Dimensions",
             dimensions,
-            [(each.design.name, *(component(each.design, name) for name in names)) for each in every],
+            [(row.design.name, *(component(row.design, name) for name in names)) for row in every],
             "Metres and degrees, as in design files.",
         )
         .markdown()
@@ -162,11 +164,11 @@ COLUMNS = {
 }
 
 
-def _cells(each: Row) -> tuple[Any, ...]:
-    content, case = each.content, each.winner.case
+def _cells(row: Row) -> tuple[Any, ...]:
+    content, case = row.content, row.winner.case
     return (
-        each.design.name,
-        each.made_for,
+        row.design.name,
+        row.made_for,
         content["power_people_mean_W"],
         content["power_people_p10_W"],
         100 * content["can_ride"],
@@ -183,14 +185,14 @@ def _cells(each: Row) -> tuple[Any, ...]:
 def _gains(group: list[Row]) -> list[str]:
     keys = ("power_people_mean_W", "power_people_p10_W", "power_paper_rider_fitted_W")
     lines = []
-    for each in group[2:]:
+    for row in group[2:]:
         parts = []
         for other in group[:2]:
-            mean, low, paper = (f"{each.content[key] - other.content[key]:+.2f}" for key in keys)
+            mean, low, paper = (f"{row.content[key] - other.content[key]:+.2f}" for key in keys)
             parts.append(f"against {other.design.name} {mean} W in the mean, {low} W at the 10th percentile, {paper} W")
-        seat = each.content["paper_rider_seat"]
+        seat = row.content["paper_rider_seat"]
         lines.append(
-            f"- {each.design.name}: {parts[0]} for the paper's rider, whose seat moves {seat}; {parts[1]} for that "
+            f"- {row.design.name}: {parts[0]} for the paper's rider, whose seat moves {seat}; {parts[1]} for that "
             "rider."
         )
     return lines
@@ -198,18 +200,23 @@ def _gains(group: list[Row]) -> list[str]:
 
 def _degenerate(designs: list[Design]) -> str:
     close = [
-        f"{each.name} ({component(each, 'R8') * 1e3:.1f} mm)" for each in designs if component(each, "R8") < AT_PIN
+        f"{design.name} ({component(design, 'R8') * 1e3:.1f} mm)"
+        for design in designs
+        if component(design, "R8") < AT_PIN
     ]
     return "Pedal practically on the rocker joint, so that the coupler no longer drives it: " + ", ".join(close) + "."
 
 
 def main() -> None:
     """Search, compare, write; after every target what is known by then."""
-    found: dict[str, list[Row]] = {}
+    by_target: dict[str, list[Row]] = {}
     for target in TARGETS:
-        found[target] = rows(target)
-        write_text(FOLDER / "people.md", markdown(found))
-        content = {"provenance": provenance([DEFAULT]), "designs": [each.content for g in found.values() for each in g]}
+        by_target[target] = rows(target)
+        write_text(FOLDER / "people.md", markdown(by_target))
+        content = {
+            "provenance": provenance([DEFAULT]),
+            "designs": [row.content for g in by_target.values() for row in g],
+        }
         write_text(FOLDER / "people.json", json_text(content))
 
 

@@ -74,7 +74,7 @@ def ridden(design: Design, limit: float | None) -> dict[str, Any]:
         stopped,
         trace.mean_speed / KMH if trace.mean_speed else None,
         100 * trace.coasting_share,
-        "yes" if all(each.ok for each in case.checks) else "NO",
+        "yes" if all(check.ok for check in case.checks) else "NO",
     )
     return dict(zip(COLUMNS, cells, strict=True))
 

@@ -110,8 +110,8 @@ def per_first_order(case: Case, run: Simulation) -> float:
     """Error of the crank power per the e1 of docs/theory.md, by least squares."""
     motion = case.steps.motion(run.crank_angle)
     expected = first_order_error(motion, case.cadence, run.timestep)
-    found = run.power - case.reference_power(run)
-    return float(np.einsum("a,a->", found, expected) / np.einsum("a,a->", expected, expected))
+    error = run.power - case.reference_power(run)
+    return float(np.einsum("a,a->", error, expected) / np.einsum("a,a->", expected, expected))
 
 
 def first_order_error(motion: Motion, cadence: float, timestep: float) -> FloatArray:

@@ -25,10 +25,15 @@ def main() -> None:
         cadence = design.linkage.cadence
         for window in stimulation(design, [cadence]):
             if window.leg == "right":
-                found = window.record(design)
-                both = found["both_joints_deg"]
-                angles = (*found["works_deg"], found["width_deg"], found["core_width_deg"], found["joint_swing_deg"])
-                rows.append((name.upper(), window.muscle, found["moment"], *angles, both))
+                record = window.record(design)
+                both = record["both_joints_deg"]
+                angles = (
+                    *record["works_deg"],
+                    record["width_deg"],
+                    record["core_width_deg"],
+                    record["joint_swing_deg"],
+                )
+                rows.append((name.upper(), window.muscle, record["moment"], *angles, both))
         leads.append((name.upper(), cadence / RPM, *(math.degrees(cadence * lag) for lag in LAGS)))
     write_text(
         PATH,

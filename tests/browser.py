@@ -30,7 +30,7 @@ def check_on_a_phone(browser: Any, file: Path) -> None:
     width, height = PHONE
     page = browser.new_page(viewport={"width": width, "height": height})
     page.goto(file.as_uri())
-    page.evaluate("document.querySelectorAll('details').forEach(each => each.open = true)")
+    page.evaluate("document.querySelectorAll('details').forEach(box => box.open = true)")
     assert page.evaluate("document.documentElement.scrollWidth") == width
     for plot in page.locator("svg").all():
         assert plot.bounding_box()["width"] > 0.85 * width

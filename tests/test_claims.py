@@ -49,10 +49,12 @@ def _find(steps: list[str | int | float]) -> Any:
     return here.replace("+-", "±") if isinstance(here, str) else here
 
 
-SENTENCES = [(page, each) for page, sentences in CLAIMS.items() for each in sentences]
+SENTENCES = [(page, sentence) for page, sentences in CLAIMS.items() for sentence in sentences]
 
 
-@pytest.mark.parametrize(("page", "claim"), SENTENCES, ids=[f"{page} {each['says'][:40]}" for page, each in SENTENCES])
+@pytest.mark.parametrize(
+    ("page", "claim"), SENTENCES, ids=[f"{page} {sentence['says'][:40]}" for page, sentence in SENTENCES]
+)
 def test_a_number_in_the_text_is_that_of_its_result(page: str, claim: dict[str, Any]) -> None:
     sentence = claim["says"].format(**{name: _find(steps) for name, steps in claim["of"].items()})
     text = re.sub(r"\s+", " ", (ROOT / page).read_text(encoding="utf-8")).replace("**", "")

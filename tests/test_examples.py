@@ -96,11 +96,11 @@ def test_mjx_rollout() -> None:
     """Copies with different leads part, the loops of all hold, and a lead of half a turn is worst."""
     pytest.importorskip("jax")
     pytest.importorskip("mujoco.mjx")
-    found = runpy.run_path(str(EXAMPLES / "mjx_rollout.py"))["roll_out"](copies=4, duration=0.5)
-    assert np.isfinite(found["distance"]).all()
-    assert found["loop_gap"].max() < 1e-5
-    assert found["distance"].argmin() == 3  # the leads go from -90 to 180 deg
-    assert 0.5 < found["distance"].min() < found["distance"].max() < 1.0
+    rollout = runpy.run_path(str(EXAMPLES / "mjx_rollout.py"))["roll_out"](copies=4, duration=0.5)
+    assert np.isfinite(rollout["distance"]).all()
+    assert rollout["loop_gap"].max() < 1e-5
+    assert rollout["distance"].argmin() == 3  # the leads go from -90 to 180 deg
+    assert 0.5 < rollout["distance"].min() < rollout["distance"].max() < 1.0
 
 
 def replayed(*arguments: str, folder: Path, capsys: pytest.CaptureFixture[str]) -> tuple[int, str, str]:

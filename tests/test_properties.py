@@ -118,24 +118,26 @@ def test_the_crank_moment_is_linear_in_the_joint_moments(
 def test_power_is_linear_in_the_gear_ratio(design: Design, moments: JointMoments, factor: float) -> None:
     linkage = design.linkage
     faster = design.with_linkage(gear_ratio=factor * linkage.gear_ratio)
-    slow, fast = (quasi_static(each, moments, points=90) for each in (design, faster))
+    slow, fast = (quasi_static(geared, moments, points=90) for geared in (design, faster))
     assert fast.power_mean == pytest.approx(factor * slow.power_mean, rel=1e-12)
     assert fast.work_per_turn == pytest.approx(slow.work_per_turn, rel=1e-12)
 
 
 @given(st.lists(designs(("cdt",)), min_size=2, max_size=4))
 @settings(max_examples=20)
-def test_a_batch_is_its_designs(each: list[Design]) -> None:
+def test_a_batch_is_its_designs(singles: list[Design]) -> None:
     """One call on a batch gives what one call a design gives."""
     fields = [name for name in Linkage.__dataclass_fields__ if name not in ("kind", "branch")]
-    each = [design for design in each if design.linkage.branch == each[0].linkage.branch]
-    column = {name: np.array([getattr(design.linkage, name) for design in each])[:, None] for name in fields}
-    legs = {name: np.array([getattr(design.rider, name) for design in each])[:, None] for name in ("thigh", "shank")}
+    singles = [design for design in singles if design.linkage.branch == singles[0].linkage.branch]
+    column = {name: np.array([getattr(design.linkage, name) for design in singles])[:, None] for name in fields}
+    legs = {name: np.array([getattr(design.rider, name) for design in singles])[:, None] for name in ("thigh", "shank")}
     batch = replace(
-        each[0], linkage=Linkage("cdt", **column, branch=each[0].linkage.branch), rider=replace(each[0].rider, **legs)
+        singles[0],
+        linkage=Linkage("cdt", **column, branch=singles[0].linkage.branch),
+        rider=replace(singles[0].rider, **legs),
     )
     together = kinematics.solve(batch, ANGLES)
-    for row, design in enumerate(each):
+    for row, design in enumerate(singles):
         alone = kinematics.solve(design, ANGLES)
         assert together.joint_angle.knee[row] == pytest.approx(alone.joint_angle.knee, abs=1e-13)
         assert together.joint_rate.hip[row] == pytest.approx(alone.joint_rate.hip, abs=1e-11)
@@ -167,7 +169,7 @@ def test_a_moments_file_reads_back(
     rows = [f"{float(np.degrees(a))!r},{float(k)!r},{float(h)!r}" for a, k, h in _rows(moments)]
     random.shuffle(rows)
     path.write_text("\n".join([",".join(COLUMNS), *rows]) + "\n")
-    curves, again = (each.at(np.linspace(0, 2 * np.pi, 100)) for each in (moments, load_moments(path)))
+    curves, again = (samples.at(np.linspace(0, 2 * np.pi, 100)) for samples in (moments, load_moments(path)))
     scale = max(np.abs(moment).max() for moment in curves)
     for joint in JOINTS:
         assert again[joint] == pytest.approx(curves[joint], abs=1e-9 * scale)
@@ -178,7 +180,7 @@ def test_a_moments_file_reads_back(
 def test_dynamics_agree_with_statics(design: Design, moments: JointMoments) -> None:
     """At an unhurried 60 rpm: random linkages have parts that are faster than any designer would allow."""
     result = Case(design, moments, cadence=2 * math.pi)
-    values = {each.name: each for each in result.checks}
+    values = {check.name: check for check in result.checks}
     gross = np.abs(result.static.power).mean()  # the net power of random moments may be next to nothing
     assert abs(result.simulation.power_mean - result.static.power_mean) < 1e-3 * gross
     assert values["loop_gap"].ok

@@ -60,12 +60,12 @@ def runs(rows: list[dict[str, Any]]) -> Iterator[Table]:
         yield Table(
             f"Crank moment by {family} methods: largest difference over a turn, N m",
             {"methods": "", **dict.fromkeys(names, ".1e")},
-            [(pair, *(each[pair] for each in apart)) for pair in apart[0]],
+            [(pair, *(row[pair] for row in apart)) for pair in apart[0]],
             "What the simulation differs by is its time step, most where the torque map jumps, and, in the massless "
             "family, the trace of mass that it keeps.",
         )
     terms = [row["energy_J"] for row in rows]
-    cells = [(term, *(each[term] for each in terms)) for term in terms[0]]
+    cells = [(term, *(row[term] for row in terms)) for term in terms[0]]
     yield Table("Energy over a turn, J", {"term": "", **dict.fromkeys(names, ".5f")}, cells)
     orders = ("gap_order", "power_order", "softness_order", "extrapolated_work_error", "power_uncertainty")
     cells = [(key.replace("_", " "), *(row["refinement"][key] for row in rows)) for key in orders]

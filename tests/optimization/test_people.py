@@ -110,8 +110,8 @@ def test_a_search_finds_a_design_that_suits_people_better() -> None:
     evaluation = problem.evaluate(best.x[None])
     assert evaluation.feasible[0]
     assert evaluation.power[0, 0] == pytest.approx(best.merit)
-    found = problem.design(best.x, "found")
-    seated = [fit_seat(found, person.rider, MOMENTS).static for person in problem.riders(best.x)]
+    winner = problem.design(best.x, "found")
+    seated = [fit_seat(winner, person.rider, MOMENTS).static for person in problem.riders(best.x)]
     drawn = [fes_mj.quasi_static(person, MOMENTS) for person in problem.riders(best.x)]
     for fitted, own in itertools.zip_longest(seated, drawn):
         assert fitted

@@ -21,9 +21,9 @@ def row(name: str) -> dict[str, str]:
 @pytest.mark.parametrize("name", ["r1", "d1"])
 def test_a_plain_step_errs_as_the_closed_form_says(name: str) -> None:
     idle = Case(fes_mj.load_design(name), NO_MOMENTS)
-    found = per_first_order(idle, idle.steps.run(PLAIN_LOOP))
-    assert found == pytest.approx(1, abs=0.1)
-    assert float(row(name)["its error per e1"]) == pytest.approx(found, abs=0.006)
+    ratio = per_first_order(idle, idle.steps.run(PLAIN_LOOP))
+    assert ratio == pytest.approx(1, abs=0.1)
+    assert float(row(name)["its error per e1"]) == pytest.approx(ratio, abs=0.006)
 
 
 @pytest.mark.parametrize("name", ["r1", "d1"])

@@ -108,8 +108,8 @@ def test_the_judge_sees_energy_and_gaps_at_the_horizon(motion: str, good: dict[A
         faulty = copy.deepcopy(good)
         states = faulty["trt", "sites", motion]["states"]
         states[-1][part] = [factor * value for value in states[-1][part]]
-        found = judged("mujoco", faulty, asked).motions[motion]
-        assert not found.ok, spoilt
+        verdict = judged("mujoco", faulty, asked).motions[motion]
+        assert not verdict.ok, spoilt
     faulty = copy.deepcopy(good)
     faulty["trt", "sites", motion]["states"] = []
     assert not judged("mujoco", faulty, asked).ok

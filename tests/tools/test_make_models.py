@@ -37,8 +37,8 @@ def test_the_folder_has_a_picture(name: str) -> None:
 
 
 def test_the_folder_holds_nothing_else() -> None:
-    found = {path.name for path in (ROOT / "mjcf").iterdir()}
-    assert found == set(DESIGNS)
+    folders = {path.name for path in (ROOT / "mjcf").iterdir()}
+    assert folders == set(DESIGNS)
     for name in DESIGNS:
         files = {path.name for path in (ROOT / "mjcf" / name).iterdir()}
         models = {f"{name}.xml", *(f"{name}-{suffix}.xml" for suffix in SHIPPED)}

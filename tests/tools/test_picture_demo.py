@@ -23,7 +23,7 @@ def test_readmes_picture_is_a_frame_of_todays_video() -> None:
 
     from tools.picture_demo import PICTURE, frame
 
-    kept, today = (each.astype(float) for each in (np.asarray(Image.open(PICTURE)), frame()))
+    kept, today = (picture.astype(float) for picture in (np.asarray(Image.open(PICTURE)), frame()))
     assert kept.shape == today.shape == (720, 1280, 3)
     # OpenGL drivers may differ along edges; the next frame differs by 0.6
     assert np.abs(kept - today).mean() < 0.5, "run `make pictures`"

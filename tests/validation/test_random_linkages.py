@@ -77,5 +77,5 @@ def test_the_simulated_mean_power_is_the_references(seed: int) -> None:
     design, moments = random_design(rng, nearest=1e-3), random_moments(rng)
     power, gross, _ = mean_power(design, moments, turn(design))
     case = Case(design, moments)
-    assert case.agrees, [each for each in case.checks if not each.ok]
+    assert case.agrees, [check for check in case.checks if not check.ok]
     assert case.simulation.power_mean == pytest.approx(power, abs=2 * LIMIT * max(gross, LEAST_POWER))

@@ -54,17 +54,17 @@ def test_a_page_that_is_behind_is_noticed() -> None:
 def test_the_verification_has_todays_checks_and_limits() -> None:
     checks = json.loads((RESULTS / "verification.json").read_text(encoding="utf-8"))["checks"]
     stated = {name: (row.kind, row.limit, row.unit) for name, row in definitions().items()}
-    assert {each["name"]: (each["kind"], each["limit"], each["unit"]) for each in checks} == stated
+    assert {check["name"]: (check["kind"], check["limit"], check["unit"]) for check in checks} == stated
 
 
 @pytest.mark.long
 def test_the_verification_has_todays_values(capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["validate", "d1", "--group", "p1p2", "--quick", "--json"]) == 0
     record = json.loads((RESULTS / "verification.json").read_text(encoding="utf-8"))
-    old = {(each["name"], each["subject"]): each["value"] for each in record["checks"]}
-    for each in json.loads(capsys.readouterr().out)["checks"]:
-        if each["value"] > 1e-3 * each["limit"]:  # what is not rounding
-            assert each["value"] == pytest.approx(old[each["name"], each["subject"]], rel=0.02), each["name"]
+    old = {(check["name"], check["subject"]): check["value"] for check in record["checks"]}
+    for check in json.loads(capsys.readouterr().out)["checks"]:
+        if check["value"] > 1e-3 * check["limit"]:  # what is not rounding
+            assert check["value"] == pytest.approx(old[check["name"], check["subject"]], rel=0.02), check["name"]
 
 
 def test_the_found_designs_have_the_power_they_are_listed_with() -> None:

@@ -64,10 +64,10 @@ def rows(name: str, tasks: dict[Key, Job], references: dict[Key, Answer]) -> lis
             asked[design, anchors, motion] = _finer(task | ({"samples": []} if motion in reader.still else {}), reader)
         elif motion == "one leg":  # what it need not move it only loads
             asked[design, anchors, motion] = {"model": task["model"]}
-    told = ask(name, python, [*asked.values()])
-    answers = dict(zip(asked, told["answers"], strict=True))
+    reply = ask(name, python, [*asked.values()])
+    answers = dict(zip(asked, reply["answers"], strict=True))
     designs = dict.fromkeys(design for design, *_ in tasks)
-    return [judge(name, told["version"], design, answers, asked, references) for design in designs]
+    return [judge(name, reply["version"], design, answers, asked, references) for design in designs]
 
 
 def _shortened(task: Job, most: int) -> Job:

@@ -18,14 +18,14 @@ and loops (limit: {1e6 * GAP_LIMIT:g} um). Every reader must be left with one de
 """
 
 
-def table(found: list[Row]) -> str:
+def table(rows: list[Row]) -> str:
     """The rows in Markdown: what is kept and how it moves, and what the limits mean."""
     lines = [
         "| reader | design | default model | loops kept at sites / on bodies | pedal error, mm (limit) "
         "| acceleration error (limit), rad/s²: " + " | ".join(MOTIONS) + " | verdict |",
         "|---|---|---|---|---:|" + "---:|" * len(MOTIONS) + "---|",
     ]
-    for row in found:
+    for row in rows:
         at_sites, on_bodies = f"{row.loops_at_sites} of {row.loops}", f"{row.loops_on_bodies} of {row.loops}"
         errors = (
             f"{motion.acceleration:.1e} ({motion.acceleration_limit:.1e})" if motion else "-"
@@ -42,15 +42,15 @@ def table(found: list[Row]) -> str:
         "| reader | design | energy error, % / loop gap, um: " + " | ".join(moving) + " |",
         "|---|---|" + "---:|" * len(moving),
     ]
-    for row in found:
+    for row in rows:
         cells = (
             f"{100 * motion.energy:.2g} / {1e6 * motion.gap:.2g}" if motion and motion.moved else "-"
             for motion in map(row.motions.get, moving)
         )
         lines.append(f"| {READERS[row.reader].title} | {row.design.upper()} | {' | '.join(cells)} |")
     lines += ["", "| reader | anchors | what its limits allow for | drops | does without |", "|---|---|---|---|---|"]
-    for name in dict.fromkeys(row.reader for row in found):
-        dropped = dict.fromkeys(part for row in found if row.reader == name for part in row.drops)
+    for name in dict.fromkeys(row.reader for row in rows):
+        dropped = dict.fromkeys(part for row in rows if row.reader == name for part in row.drops)
         reader = READERS[name]
         without = [
             *(f"{motion}: {why}" for motion, why in reader.without.items()),
