@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple, TypeAlias
 
 from cyclopts import ArgumentCollection, Group, Parameter
-from cyclopts.validators import Number, mutually_exclusive
+from cyclopts.validators import Number, all_or_none, mutually_exclusive
 
 from fes_mj.common.console import complain, print_json, say
 from fes_mj.common.errors import InputError
@@ -18,6 +18,7 @@ from fes_mj.linkage.variables import VARIABLES, crank_speed
 from fes_mj.moments.files import load_moments, measured_files
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.torque_velocity import load_torque_velocity
+from fes_mj.statics.friction import Bearings
 
 
 def bounds(variable: str) -> Number:
@@ -160,6 +161,29 @@ class RunOptions(PrintOptions, LoadOptions):
     """
 
     verbose: Annotated[bool, Parameter(alias="-v", negative="")] = False
+
+
+_BEARINGS = Group("Bearings", validator=all_or_none)
+
+
+@Parameter(name="*")
+@dataclass
+class BearingOptions:
+    """Friction in the linkage's bearings; by default there is none.
+
+    Args:
+        bearing_friction: Coefficient of friction: about 0.1 of plain bearings, 0.002 of rolling ones.
+        pin_radius: Radius at which it acts, m: that of the pins.
+    """
+
+    bearing_friction: Annotated[float | None, Parameter(group=_BEARINGS, validator=Number(gte=0, lte=1))] = None
+    pin_radius: Annotated[float | None, Parameter(group=_BEARINGS, validator=Number(gt=0, lte=0.1))] = None
+
+    def load(self) -> Bearings | None:
+        """The bearings that they describe, if any."""
+        if self.bearing_friction is None or self.pin_radius is None:
+            return None
+        return Bearings(self.bearing_friction, self.pin_radius)
 
 
 def warn_of(moments: JointMoments) -> None:

@@ -11,7 +11,7 @@ from cyclopts.validators import Number
 
 from fes_mj.budget.budget import error_budget, summary
 from fes_mj.cli import tables
-from fes_mj.cli.options import DesignName, Flag, Out, RunOptions, needs
+from fes_mj.cli.options import BearingOptions, DesignName, Flag, Out, RunOptions, needs
 from fes_mj.common.console import print_table
 from fes_mj.common.errors import InputError
 from fes_mj.common.units import RPM
@@ -21,7 +21,7 @@ from fes_mj.simulation.time_step import LONGEST_TIMESTEP
 if TYPE_CHECKING:
     from fes_mj.crosscheck.turn_case import Case
 
-_DEFAULTS = RunOptions()
+_DEFAULTS, _BEARINGS = RunOptions(), BearingOptions()
 _VIDEO = Group("Video", validator=needs("--render"))
 TURN_SHOWN = (0.1, 60.0)  # s, shortest and longest of a turn in a video
 
@@ -31,6 +31,7 @@ def simulate(
     /,
     *,
     options: RunOptions = _DEFAULTS,
+    bearings: BearingOptions = _BEARINGS,
     out: Out | None = None,
     timestep: Annotated[float | None, Parameter(validator=Number(gt=0, lte=LONGEST_TIMESTEP))] = None,
     turns: Annotated[int, Parameter(validator=Number(gte=1, lte=1000))] = 1,
@@ -55,7 +56,7 @@ def simulate(
         _check_speed(speed, loaded.cadence)
     from fes_mj.crosscheck.turn_case import Case, turn_summary
 
-    case = Case(*loaded, timestep, turns, options.legs)
+    case = Case(*loaded, timestep, turns, options.legs, bearings.load())
     stem = f"{case.design.name}-{case.moments.name}"
     paths = require_results(out, stem, ("json", "csv", "xml"), inputs) if out else {}
     content = turn_summary(case) | summary(error_budget(*case.statics.turns)) if paths or options.json else {}
@@ -102,6 +103,7 @@ def _print(case: Case, verbose: bool) -> None:
     together = "dynamic" if len(run.legs) == 1 else "dynamic, both legs"
     print_table("The turn", ("", f"quasi-static{sides[0]}", together), turn)
     tables.print_forces(case.joint_forces)
+    tables.print_friction(case.steps.friction)
     tables.print_checks("Checks", case.checks)
     if verbose:
         terms = [(name.replace("_", " "), f"{value:.5f}") for name, value in run.energy.as_json().items()]
@@ -119,4 +121,5 @@ def _texts(case: Case) -> tuple[str, str]:
     from fes_mj.simulation.mjcf import build_mjcf
 
     spec = build_mjcf(case.design, cadence=case.cadence, timestep=case.simulation.timestep, legs=case.legs)
+    case.steps.edit_model(spec)
     return cycle_csv(case), mjcf_text(spec)

@@ -5,17 +5,25 @@ from typing import Any
 import numpy as np
 
 from fes_mj.cli import tables
-from fes_mj.cli.options import DesignName, Flag, Loaded, RunOptions
+from fes_mj.cli.options import BearingOptions, DesignName, Flag, Loaded, RunOptions
 from fes_mj.common.console import print_table, say
 from fes_mj.linkage.turning import CRANK_ZERO, FROM_TOP, turning
 from fes_mj.moments.uncertainty import with_sd
+from fes_mj.statics.friction import BearingLoss, Bearings
 from fes_mj.statics.joint_forces import JointForces
 from fes_mj.statics.turn import LegTurns, QuasiStatic, quasi_static
 
-_DEFAULTS = RunOptions()
+_DEFAULTS, _BEARINGS = RunOptions(), BearingOptions()
 
 
-def static(design: DesignName, /, *others: DesignName, options: RunOptions = _DEFAULTS, curves: Flag = False) -> int:
+def static(
+    design: DesignName,
+    /,
+    *others: DesignName,
+    options: RunOptions = _DEFAULTS,
+    bearings: BearingOptions = _BEARINGS,
+    curves: Flag = False,
+) -> int:
     """Mean crank power of a design by statics, without masses and without MuJoCo; of several beside each other.
 
     Args:
@@ -23,31 +31,44 @@ def static(design: DesignName, /, *others: DesignName, options: RunOptions = _DE
     """
     loaded = [options.load(name) for name in (design, *others)]
     results = [LegTurns.solve(*named, options.legs) for named in loaded]
-    first, result = loaded[0], results[0]
+    first, result, friction = loaded[0], results[0], bearings.load()
     if others:
-        options.show(lambda: _comparison(loaded, results, curves), lambda: _print_comparison(results))
+        options.show(
+            lambda: _comparison(loaded, results, curves, friction), lambda: _print_comparison(results, friction)
+        )
     else:
-        options.show(lambda: _content(first, result, curves), lambda: _print(first, result, curves, options.verbose))
+        options.show(
+            lambda: _content(first, result, curves, friction),
+            lambda: _print(first, result, curves, friction, options.verbose),
+        )
     return 0
 
 
-def _content(loaded: Loaded, result: LegTurns, curves: bool) -> dict[str, Any]:
+def _loss(result: LegTurns, bearings: Bearings | None) -> BearingLoss | None:
+    return BearingLoss(JointForces(result.first), bearings) if bearings else None
+
+
+def _content(loaded: Loaded, result: LegTurns, curves: bool, bearings: Bearings | None) -> dict[str, Any]:
     """The result of one design as JSON names and units it."""
     from fes_mj.budget.budget import error_budget, summary
 
     content = result.summary() | summary(error_budget(*result.turns)) | JointForces(result.first).summary()
+    loss = _loss(result, bearings)
+    content["friction_loss_W"] = loss.power if loss else 0.0
     return content | (_curves(quasi_static(*loaded, points=360)) if curves else {})
 
 
-def _comparison(loaded: list[Loaded], results: list[LegTurns], curves: bool) -> dict[str, Any]:
+def _comparison(
+    loaded: list[Loaded], results: list[LegTurns], curves: bool, bearings: Bearings | None
+) -> dict[str, Any]:
     """Several designs as JSON, and the mean power of each per the first's."""
-    designs = [_content(named, result, curves) for named, result in zip(loaded, results, strict=True)]
+    designs = [_content(named, result, curves, bearings) for named, result in zip(loaded, results, strict=True)]
     keys = ("design", "power_ratio", "power_ratio_sd")
     ratios = [(result.first.design.name, *result.ratio(results[0])) for result in results]
     return {"designs": designs, "ratios": [dict(zip(keys, ratio, strict=True)) for ratio in ratios]}
 
 
-def _print(loaded: Loaded, result: LegTurns, curves: bool, verbose: bool) -> None:
+def _print(loaded: Loaded, result: LegTurns, curves: bool, bearings: Bearings | None, verbose: bool) -> None:
     first = result.first
     sides = ("quasi-static",) if len(result.turns) == 1 else ("right", "left")
     rows = tables.beside(*map(tables.power_rows, result.turns))
@@ -59,6 +80,7 @@ def _print(loaded: Loaded, result: LegTurns, curves: bool, verbose: bool) -> Non
     together = "quasi-static" if result.legs == 1 else "both legs"
     print_table("The turn", ("", together), tables.turn_rows(result.summary()))
     tables.print_forces(JointForces(first))
+    tables.print_friction(_loss(result, bearings))
     if verbose:
         print_table("Joint reactions", ("joint", "mean N", "largest N"), tables.force_rows(first.reactions))
     if curves:
@@ -67,7 +89,7 @@ def _print(loaded: Loaded, result: LegTurns, curves: bool, verbose: bool) -> Non
         tables.print_notes(turn, f"{turn.moments.name}: " if len(result.turns) > 1 else "")
 
 
-def _print_comparison(results: list[LegTurns]) -> None:
+def _print_comparison(results: list[LegTurns], bearings: Bearings | None) -> None:
     """One column a design."""
     summaries, ratios = [result.summary() for result in results], [result.ratio(results[0]) for result in results]
     rows = [
@@ -80,6 +102,9 @@ def _print_comparison(results: list[LegTurns]) -> None:
     ]
     rows += tables.beside(*(tables.power_rows(result.first)[1:] for result in results))
     rows += tables.beside(*map(tables.turn_rows, summaries))
+    if bearings:
+        losses = [loss.power for result in results if (loss := _loss(result, bearings))]
+        rows.append(("lost in the bearings, W", *(f"{loss:.2f}" for loss in losses)))
     names = [result.first.design.name for result in results]
     print_table(f"{results[0].first.moments.name}, quasi-static", ("", *names), rows)
     for result in results:

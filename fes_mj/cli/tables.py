@@ -12,6 +12,7 @@ from fes_mj.common.console import conclude, number, print_table, say, verdict
 from fes_mj.common.units import RPM
 from fes_mj.linkage.design import Design
 from fes_mj.moments.joint_moments import JointMoments
+from fes_mj.statics.friction import BearingLoss
 from fes_mj.statics.joint_forces import NET_FORCE, JointForces, KneeLoad, peaks
 from fes_mj.statics.turn import QuasiStatic
 
@@ -60,6 +61,14 @@ def print_forces(joint_forces: JointForces) -> None:
     ]
     print_table("Largest forces, N", ("joint", "moments alone", "with masses"), cells)
     say(f"note: {NET_FORCE[0].lower()}{NET_FORCE[1:]}")
+
+
+def print_friction(loss: BearingLoss | None) -> None:
+    """Print what each bearing of one leg's linkage loses, if there is friction."""
+    if loss:
+        rows = [(joint.replace("_", " "), f"{power:.3f}") for joint, power in loss.by_joint.items()]
+        left = f"{loss.power:.3f} W lost, {loss.forces.static.power_mean - loss.power:.3f} W left"
+        print_table(f"Friction in the bearings: {left}", ("bearing", "loss, W"), rows)
 
 
 def beside(*results: list[tuple[str, str]]) -> list[tuple[str, ...]]:

@@ -12,14 +12,18 @@ from fes_mj.linkage.design import Design
 from fes_mj.linkage.inertia import GRAVITY, BodyLoad, body_loads
 from fes_mj.linkage.joints import PerJoint
 from fes_mj.linkage.kinematics import Motion
+from fes_mj.linkage.legs import LEGS
 from fes_mj.linkage.variables import crank_speed
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.torque_map import TorqueMap, torque_map
 from fes_mj.simulation.appearance import Spec
+from fes_mj.simulation.bearings import add_friction
 from fes_mj.simulation.bench import PLAIN, BenchOptions, Simulation, simulate
 from fes_mj.simulation.mjcf import REAL, ModelOptions, Physics, build_mjcf
 from fes_mj.statics.equilibrium import equilibrium, virtual_work
-from fes_mj.statics.turn import QuasiStatic
+from fes_mj.statics.friction import BearingLoss, Bearings
+from fes_mj.statics.joint_forces import JointForces
+from fes_mj.statics.turn import TURN_POINTS, QuasiStatic
 from fes_mj.statics.validity import turning_in_range
 
 
@@ -27,7 +31,7 @@ from fes_mj.statics.validity import turning_in_range
 class Setup:
     """A design under joint moments at a cadence (rad/s, by default Eq. 16), for whole turns of one leg or two.
 
-    timestep: s, by default chosen by time_step.
+    timestep: s, by default chosen by time_step. bearings: with friction, if they are given.
     """
 
     design: Design
@@ -36,6 +40,7 @@ class Setup:
     timestep: float | None = None
     turns: int = 1
     legs: int = 1
+    bearings: Bearings | None = None
 
     def __post_init__(self) -> None:
         given = None if math.isnan(self.cadence) else self.cadence
@@ -68,7 +73,9 @@ class Pipeline(Setup):
         return equilibrium(motion, joint_moment, loads)
 
     def edit_model(self, spec: Spec) -> None:
-        """Change the MuJoCo model before it is compiled; nothing is changed here."""
+        """Change the MuJoCo model before it is compiled: give it the friction of bearings, if any."""
+        if self.friction:
+            add_friction(spec, self.design.linkage.architecture, LEGS[self.legs], self.friction.moments)
 
     def run(
         self, options: BenchOptions = PLAIN, *, timestep: float | None = None, turns: float | None = None
@@ -103,6 +110,11 @@ class Pipeline(Setup):
         motion = self.motion(np.linspace(0, 2 * np.pi, points, endpoint=False))
         joint_moment = self.joint_moment(motion, leg)
         return QuasiStatic(motion, torque, self.cadence, joint_moment, *self.equilibrium(motion, joint_moment))
+
+    @cached_property
+    def friction(self) -> BearingLoss | None:
+        """What the bearings of one leg lose, the right one's if the legs differ; None without friction."""
+        return BearingLoss(JointForces(self.quasi_static(TURN_POINTS)), self.bearings) if self.bearings else None
 
     def crank_moment(
         self, motion: Motion, mass_scale: float = 1.0, gravity: float = GRAVITY, leg: str = ""

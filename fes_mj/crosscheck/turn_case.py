@@ -1,6 +1,6 @@
 """Dynamic against static: what is measured of a case, what is compared in it, the verdict."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 from typing import Any
 
@@ -53,7 +53,7 @@ class Case(Brief, Setup):
     @cached_property
     def steps(self) -> Pipeline:
         """The pipeline of this setup."""
-        return self.pipeline(self.design, self.moments, self.cadence, self.timestep, self.turns, self.legs)
+        return self.pipeline(*(getattr(self, field.name) for field in fields(Setup)))
 
     @cached_property
     def static(self) -> QuasiStatic:
@@ -89,14 +89,29 @@ class Case(Brief, Setup):
         return float(min(1.0, INERTIA_POWER_RMS / inertia_power))
 
     def reference_power(self, run: Simulation | None = None, mass_scale: float | None = None) -> FloatArray:
-        """Exact crank power of all legs at the crank angles of a run, W; mass_scale 0 is the quasi-static curve."""
+        """Exact crank power of all legs at the crank angles of a run, W; mass_scale 0 is the quasi-static curve.
+
+        After the friction of bearings, if there is any.
+        """
         run = run or self.simulation
+        total = np.zeros_like(run.crank_angle)
         scale = run.mass_scale if mass_scale is None else mass_scale
-        legs = [
-            self.steps.crank_moment(self.steps.motion(run.crank_angle - leg.lag), scale, run.gravity, leg.prefix)
-            for leg in run.legs
-        ]
-        return np.asarray(self.cadence * np.sum(legs, axis=0))
+        for leg in run.legs:
+            motion = self.steps.motion(run.crank_angle - leg.lag)
+            total = total + self.steps.crank_moment(motion, scale, run.gravity, leg.prefix)
+            if self.steps.friction:
+                total = total - self.steps.friction.crank_moment(motion)
+        return np.asarray(self.cadence * total)
+
+    @property
+    def friction_loss(self) -> float:
+        """Of the bearings of one leg, W."""
+        return self.steps.friction.power if self.steps.friction else 0.0
+
+    @property
+    def static_power_mean(self) -> float:
+        """Quasi-static mean crank power of one leg after the friction of its bearings, W."""
+        return self.statics.power_mean - self.friction_loss
 
     @property
     def power_scale(self) -> float:
@@ -106,15 +121,15 @@ class Case(Brief, Setup):
     @property
     def relative_difference(self) -> float:
         """Mean power, dynamic minus static, relative to static; NaN for a static mean of zero."""
-        dynamic, static = self.simulation.power_mean, self.statics.power_mean
+        dynamic, static = self.simulation.power_mean, self.static_power_mean
         return (dynamic - static) / abs(static) if static else np.nan
 
     @property
     def difference_text(self) -> str:
         """The same for people: in percent, or in W where the static mean is too small for it to mean anything."""
-        if abs(self.statics.power_mean) >= LEAST_POWER:
+        if abs(self.static_power_mean) >= LEAST_POWER:
             return f"{100 * self.relative_difference:+.4f} %"
-        return f"{self.simulation.power_mean - self.statics.power_mean:+.4f} W"
+        return f"{self.simulation.power_mean - self.static_power_mean:+.4f} W"
 
     def rms_per_leg(self, run: Simulation, mass_scale: float | None = None) -> float:
         """Instantaneous crank power of a run against reference_power, root mean square per leg, W."""
@@ -129,14 +144,15 @@ class Case(Brief, Setup):
     def checks(self) -> tuple[Check, ...]:
         """The cross-check."""
         run, power = self.simulation, self.power_scale
-        duration = len(run.crank_angle) * run.timestep
+        duration = self.legs * len(run.crank_angle) * run.timestep
+        lost = run.energy.lost - self.friction_loss * duration
         return (
-            self.check("mean_power", abs(run.power_mean - self.statics.power_mean) / power),
+            self.check("mean_power", abs(run.power_mean - self.static_power_mean) / power),
             self.check("loop_gap", run.loop_gap_max),
             self.check("cadence_ripple", run.cadence_ripple),
             self.check("inverse_dynamics", self.rms_per_leg(run)),
             self.check("massless_statics", self.rms_per_leg(self.massless, 0.0)),
-            self.check("energy_balance", abs(run.energy.lost) / (power * duration * self.legs)),
+            self.check("energy_balance", abs(lost) / (power * duration)),
         )
 
     @property
@@ -156,7 +172,8 @@ def turn_summary(case: Case) -> dict[str, Any]:
         "hip_range_deg": run.joint_range_deg.hip,
         **power_characteristics(run.power, run.turns),
         "power_sd_W": case.statics.power_sd,
-        "static_power_mean_W": case.statics.power_mean,
+        "static_power_mean_W": case.static_power_mean,
+        "friction_loss_W": case.friction_loss,
         "relative_difference": case.relative_difference,
         "loop_gap_max_m": run.loop_gap_max,
         "cadence_ripple": run.cadence_ripple,

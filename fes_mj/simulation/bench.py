@@ -16,6 +16,7 @@ from fes_mj.linkage.legs import LEGS, Leg
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.torque_map import TorqueMap, torque_map
 from fes_mj.simulation.appearance import Spec
+from fes_mj.simulation.bearings import friction_on_crank
 from fes_mj.simulation.mjcf import REAL, ModelOptions, Physics, build_mjcf
 from fes_mj.simulation.stepping import PRE_ROLL, LoopMaker, Run, Sensors, feedback_loop, run_loop
 from fes_mj.simulation.time_step import steps_per_turn
@@ -177,7 +178,7 @@ def _measured(model: mujoco.MjModel, run: Run, torque: TorqueMap, drives: dict[s
     # what the feedback took for the speed, before the step
     ahead = {name: 1.5 * rows[f"{name}_speed"][1:-1] - 0.5 * rows[f"{name}_speed"][:-2] for name in drives}
     moment = {name: torque.of(name).moment(joint, angle[name], ahead[name]) for name, joint in drives.items()}
-    crank_moment = rows.crank_moment()[1:-1]
+    crank_moment = rows.crank_moment()[1:-1] - friction_on_crank(model, speed)
 
     def work(of: FloatArray, at: FloatArray) -> float:
         """Of a moment at speeds: the trapezium rule over whole turns."""
