@@ -1,7 +1,7 @@
 """Write fes_mj/data/moments: the joint moments recovered from the evidence and from what the text says of the figures.
 
 By group: curves drawn from what is known, as Fourier coefficients (-samples.npz), their mean (.csv), their covariance
-(.npz).
+(.npy: not compressed, since every start reads it).
 """
 
 from pathlib import Path
@@ -39,8 +39,8 @@ def write(curves: FloatArray, path: Path) -> None:
     for angle, knee, hip in zip(np.degrees(mean.crank_angle), mean.knee, mean.hip, strict=True):
         lines.append(f"{angle:.0f},{knee:.{DIGITS}f},{hip:.{DIGITS}f}")
     write_text(path, "\n".join(lines) + "\n")
-    with replacing(path.with_suffix(".npz")) as temporary:
-        np.savez_compressed(temporary, covariance=np.cov(curves.T))
+    with replacing(path.with_suffix(".npy")) as temporary:
+        np.save(temporary, np.cov(curves.T))
     with replacing(path.with_name(f"{path.stem}-samples.npz")) as temporary:
         np.savez_compressed(temporary, coefficients=curves.astype(np.float32))
 

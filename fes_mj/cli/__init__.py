@@ -63,6 +63,8 @@ def _run(arguments: list[str]) -> int:
         # keeps `import mujoco` from loading OpenGL, which may be absent; rendering puts the user's choice back
         os.environ["FES_MJ_GL"] = os.environ.get("MUJOCO_GL", "")
         os.environ["MUJOCO_GL"] = "disable"
+        # the matrices are small: starting threads for them costs a tenth of a start, and last bits depend on how many
+        os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
         from fes_mj.cli.app import run
 
         return run()

@@ -113,9 +113,9 @@ def load_moments(source: str | Path = "p1p2", left: str | Path | None = None) ->
         return replace(load_moments(source), left=load_moments(left))
     if source in GROUPS:
         path = _FOLDER / f"{source}.csv"
-        with np.load(path.with_suffix(".npz")) as stored:
-            (turn,) = _plain_turns(path)
-            return JointMoments(path.stem, turn.crank_angle, turn.knee, turn.hip, covariance=stored["covariance"])
+        (turn,) = _plain_turns(path)
+        covariance = np.load(path.with_suffix(".npy"))
+        return JointMoments(path.stem, turn.crank_angle, turn.knee, turn.hip, covariance=covariance)
     return load_measurement(Path(source)).moments
 
 

@@ -85,7 +85,9 @@ def _whole(turned: FloatArray) -> int:
     """Whole turns of an angle from zero, rad; the step from the last sample closes one."""
     if len(turned) < 2:
         return 0
-    return int((turned[-1] + np.median(np.diff(turned))) / (2 * np.pi) + 1e-6)
+    steps = np.sort(np.diff(turned))
+    middle = steps[len(steps) // 2]  # np.median imports masked arrays, for a fifteenth of a start
+    return int((turned[-1] + middle) / (2 * np.pi) + 1e-6)
 
 
 class _Cause(NamedTuple):
