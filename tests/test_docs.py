@@ -31,6 +31,7 @@ def _plain(text: str) -> str:
     "page",
     [
         pytest.param("designer.md", marks=pytest.mark.long),
+        pytest.param("build.md", marks=pytest.mark.long),
         "engineer.md",
         pytest.param("own_moments.md", marks=pytest.mark.process),
         "stimulation.md",

@@ -8,19 +8,20 @@ import numpy as np
 from cyclopts import Parameter
 from cyclopts.validators import Number
 
-from fes_mj.cli.options import DesignName, LoadOptions, Out, PrintOptions
+from fes_mj.cli.options import DesignName, Flag, LoadOptions, Out, PrintOptions
 from fes_mj.cli.tables import heading
 from fes_mj.common.console import conclude, print_table, say
-from fes_mj.common.errors import require_extra
+from fes_mj.common.errors import InputError, require_extra
 from fes_mj.common.writing import require_folder, require_replaceable, write_results
 from fes_mj.linkage.plates import hole_places
-from fes_mj.statics.turn import quasi_static
+from fes_mj.statics.turn import QuasiStatic, quasi_static
 
 if TYPE_CHECKING:
     from fes_mj.statics.sizes import Build
 
 _LOAD, _PRINT = LoadOptions(), PrintOptions()
 POINTS = 720  # crank angles at which forces are looked at
+SHOWN = 0.1  # m: clearances up to this are printed
 
 
 def draw(
@@ -30,6 +31,8 @@ def draw(
     out: Out,
     material: str = "aluminium",
     safety: Annotated[float, Parameter(validator=Number(gte=1, lte=20))] = 2.0,
+    step: Flag = False,
+    rounded: Flag = False,
     load: LoadOptions = _LOAD,
     options: PrintOptions = _PRINT,
 ) -> int:
@@ -43,25 +46,44 @@ def draw(
         out: The folder; it is made if its parent exists.
         material: Of the links: aluminium, steel or stainless.
         safety: Factor against yielding and buckling.
+        step: Also links/LINK.step, solid bodies; needs the extra `step`.
+        rounded: Draw the design with its lengths rounded to 0.5 mm.
     """
     require_extra("build", "shapely", "ezdxf", "matplotlib")
+    if step:
+        require_extra("step", "OCP")
     loaded, moments, cadence = load.load(design)
     require_folder(out if out.exists() else out.parent, "the drawings")
     from fes_mj.drawing import folder
+    from fes_mj.statics import making
     from fes_mj.statics.sizes import build
 
-    paths = {out / name: name for name in folder.names(hole_places(loaded))}
+    if rounded:
+        loaded = making.rounded(loaded)
+    paths = {out / name: name for name in folder.names(hole_places(loaded), step)}
     require_replaceable((path for path in paths if path.parent.exists()), "the drawings", load.inputs(design))
     made = build(quasi_static(loaded, moments, cadence, POINTS), material, safety)
-    files = folder.contents(made)
+    files = folder.contents(made, step)
     write_results({path: files[name] for path, name in paths.items()})
     options.show(lambda: _content(made) | {"files": [str(path) for path in paths]}, lambda: _print(made), folder=out)
     return 1 if made.stack.side.hindrances else 0
 
 
+def _rounded_power(turn: QuasiStatic) -> float | str:
+    """Mean crank power with lengths rounded to 0.5 mm, W; or why there is none."""
+    from fes_mj.statics.making import rounded
+
+    try:
+        return quasi_static(rounded(turn.design), turn.moments, turn.cadence).power_mean
+    except InputError as error:
+        return str(error)
+
+
 def _content(made: Build) -> dict[str, Any]:
     """The result as JSON names and units it."""
-    side, turn = made.stack.side, made.turn
+    from fes_mj.statics.making import nearest_gears, sensitivity
+
+    side, turn, power = made.stack.side, made.turn, _rounded_power(made.turn)
     clearances = {gap.pair: gap.distance for gap in side.gaps}
     return {
         "design": made.design.name,
@@ -78,6 +100,10 @@ def _content(made: Build) -> dict[str, Any]:
         "mass_kg": made.mass,
         "pin_diameter_m": made.pins,
         "pin_force_max_N": {joint: made.loads.largest(joint) for joint in made.pins},
+        "sensitivity_per_0.1_mm": [effect._asdict() for effect in sensitivity(made.design, turn.moments)],
+        "rounded_power_mean_W": power if isinstance(power, float) else None,
+        "rounded": power if isinstance(power, str) else "turns",
+        "gears": nearest_gears(made.design.linkage.gear_ratio)._asdict(),
     }
 
 
@@ -97,9 +123,11 @@ def _print(made: Build) -> None:
     ]
     print_table("Pins", ("joint", "diameter, mm", "riding, N", "pedal load, N"), pins)
     gaps = [(gap.pair, f"{1e3 * gap.distance:.1f}", f"{np.degrees(gap.crank_angle):.0f}")
-            for gap in sorted(side.gaps, key=lambda gap: gap.distance)]  # fmt: skip
-    head = "Clearances over the turn; what overlaps passes beside each other"
+            for gap in sorted(side.gaps, key=lambda gap: gap.distance)
+        if gap.distance < SHOWN]  # fmt: skip
+    head = f"Clearances over the turn below {1e3 * SHOWN:g} mm; negative: passing beside each other"
     print_table(head, ("pair", "least, mm", "at crank deg"), gaps)
+    _print_making(made)
     if missing := dict.fromkeys(part for _, part in side.unknown):
         say(f"not known, as the design file says nothing of them in [frame]: {', '.join(missing)}")
     if side.hindrances:
@@ -107,3 +135,26 @@ def _print(made: Build) -> None:
         conclude(False, "Cannot be built so", f": {meeting}.")
     else:
         conclude(True, "Can be built", f": feet {1e3 * made.stack.feet:.0f} mm apart.")
+
+
+def _print_making(made: Build) -> None:
+    """What tolerances, rounding and sprockets do to the design."""
+    from fes_mj.statics.making import nearest_gears, sensitivity
+
+    rows = [
+        (
+            effect.length,
+            f"{effect.power:+.4f}",
+            f"{effect.knee:+.3f}",
+            f"{effect.hip:+.3f}",
+            f"{1e3 * effect.closing:+.2f}",
+        )
+        for effect in sensitivity(made.design, made.turn.moments)
+    ]
+    heads = ("length", "power, W", "knee range, deg", "hip range, deg", "to a dead centre, mm")
+    print_table("If a length is 0.1 mm longer", heads, rows)
+    as_rounded = _rounded_power(made.turn)
+    say(f"with lengths rounded to 0.5 mm: {f'{as_rounded:.2f} W' if isinstance(as_rounded, float) else as_rounded}")
+    ratio = made.design.linkage.gear_ratio
+    crank, wheel, error = nearest_gears(ratio)
+    say(f"gear ratio {ratio:g}: {crank} teeth at the crank, {wheel} at the wheel, {100 * error:+.2f} %")

@@ -6,6 +6,7 @@ from pathlib import Path
 from fes_mj.drawing.part import FIRST, draw_part, extent, notes
 from fes_mj.drawing.pen import Pen
 from fes_mj.drawing.sheet import LINE, pictures, sheet
+from fes_mj.drawing.solid import step_text
 from fes_mj.drawing.tables import links_csv, pin_forces_csv
 from fes_mj.linkage.plates import Plate
 from fes_mj.statics.sizes import Build
@@ -13,17 +14,21 @@ from fes_mj.statics.sizes import Build
 SHEET, TABLES = ("sheet.dxf", "sheet.svg", "sheet.pdf"), ("links.csv", "pin_forces.csv")
 
 
-def names(links: Iterable[str]) -> list[Path]:
-    """Files in the folder, of a design with these links."""
-    return [*(Path("links") / f"{link}.dxf" for link in links), *map(Path, (*SHEET, *TABLES))]
+def names(links: Iterable[str], solids: bool = False) -> list[Path]:
+    """Files in the folder, of a design with these links; solids: also STEP."""
+    kinds = ("dxf", "step") if solids else ("dxf",)
+    parts = [Path("links") / f"{link}.{kind}" for kind in kinds for link in links]
+    return [*parts, *map(Path, (*SHEET, *TABLES))]
 
 
-def contents(build: Build) -> dict[Path, str | bytes]:
+def contents(build: Build, solids: bool = False) -> dict[Path, str | bytes]:
     """Every file of the folder: its name -> what is in it."""
     drawn = sheet(build)
     parts: list[str | bytes] = [link_drawing(build, plate).dxf() for plate in build.plates.values()]
+    if solids:
+        parts += [step_text(plate) for plate in build.plates.values()]
     pages: list[str | bytes] = [drawn.dxf(), *pictures(drawn), links_csv(build), pin_forces_csv(build)]
-    return dict(zip(names(build.plates), [*parts, *pages], strict=True))
+    return dict(zip(names(build.plates, solids), [*parts, *pages], strict=True))
 
 
 def link_drawing(build: Build, plate: Plate) -> Pen:

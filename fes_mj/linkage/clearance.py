@@ -21,9 +21,8 @@ from fes_mj.linkage.shapes import bars
 CLEARANCE = 0.005  # m, wanted between what passes each other
 WASHER = 0.001  # m between two layers
 FAR = 10.0  # m: farther than anything reaches
-# What stands in the middle of the tricycle: links and legs pass beside it.
-MIDDLE = ("tube", "chainring")
-FIXED = ("seat", *MIDDLE, "wheel", "ground")
+# Links and legs pass beside the tube and the chainring, which are in the middle, and feet beside the wheel.
+FIXED = ("seat", "tube", "chainring", "wheel", "ground")
 
 
 class Shape(NamedTuple):
@@ -148,9 +147,13 @@ class Side:
 
     @property
     def hindrances(self) -> list[Gap]:
-        """Parts that come nearer than CLEARANCE to what they cannot pass beside: seat, wheel, ground."""
-        walls = [part for part in FIXED if part not in MIDDLE]
-        return [gap for gap in self.gaps if gap.parts[1] in walls and gap.distance < CLEARANCE]
+        """Parts nearer than CLEARANCE to what they cannot pass beside: seat and ground, of links also the wheel."""
+        return [
+            gap
+            for gap in self.gaps
+            if gap.distance < CLEARANCE
+            and (gap.parts[1] in ("seat", "ground") or (gap.parts[1] == "wheel" and gap.parts[0] in self.plates))
+        ]
 
 
 def _of_frame(design: Design) -> Iterator[Shape]:
