@@ -9,7 +9,6 @@ from fes_mj.cli.options import DesignName, Flag, MomentsOptions
 from fes_mj.common.errors import require_extra
 from fes_mj.linkage.design_file import load_design
 
-_DEFAULTS = MomentsOptions()
 PORT, THIS_MACHINE = 8026, "127.0.0.1"
 
 
@@ -17,12 +16,12 @@ def explore(
     design: DesignName = "d1",
     /,
     *,
-    options: MomentsOptions = _DEFAULTS,
+    options: MomentsOptions = MomentsOptions(),
     port: Annotated[int, Parameter(validator=Number(gte=0, lte=65535))] = PORT,
     host: str = THIS_MACHINE,
     browser: bool = True,
     debug: Flag = False,
-) -> int:
+) -> None:
     """Drag the dimensions of a design in the browser and see at once what they do, until Ctrl-C.
 
     Args:
@@ -37,4 +36,3 @@ def explore(
     from fes_mj.explore.server import serve
 
     serve(Answers(loaded, moments), host, port, browser, debug)
-    return 0

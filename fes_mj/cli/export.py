@@ -8,7 +8,6 @@ from cyclopts import Parameter
 from fes_mj.cli.options import DesignName, Flag, LoadOptions, Out
 from fes_mj.common.console import say
 
-_DEFAULTS = LoadOptions()
 # the keys of simulation.variants.VARIANTS
 _Variant = Literal["sites", "bodies", "passive", "free", "brake", "ride", "fixed-gear", "two-legs", "compatible"]
 
@@ -20,8 +19,8 @@ def export(
     out: Out,
     variant: Annotated[list[_Variant] | None, Parameter(negative="")] = None,
     scene: Flag = False,
-    options: LoadOptions = _DEFAULTS,
-) -> int:
+    options: LoadOptions = LoadOptions(),
+) -> None:
     """Write the MJCF model of a design and, beside it as CSV, its joint and crank moments over a turn.
 
     Args:
@@ -49,4 +48,3 @@ def export(
     )
     for what, path in files.items():
         say(f"{what}: {path}")
-    return 0

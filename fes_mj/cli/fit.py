@@ -100,7 +100,6 @@ class SeatOptions:
         return SeatLimits(self.forward, self.up, (math.radians(self.recline[0]), math.radians(self.recline[1])))
 
 
-_MOMENTS, _PRINT, _RIDER, _SEAT = MomentsOptions(), PrintOptions(), RiderOptions(), SeatOptions()
 _POPULATION = Group("Population", validator=needs("--population"))
 
 
@@ -108,10 +107,10 @@ def fit(
     design: DesignName,
     /,
     *,
-    who: RiderOptions = _RIDER,
-    seat: SeatOptions = _SEAT,
-    moments: MomentsOptions = _MOMENTS,
-    options: PrintOptions = _PRINT,
+    who: RiderOptions = RiderOptions(),
+    seat: SeatOptions = SeatOptions(),
+    moments: MomentsOptions = MomentsOptions(),
+    options: PrintOptions = PrintOptions(),
     cadence: Cadence | None = None,
     dims: Dims = "identified",
     out: Out | None = None,
@@ -119,7 +118,7 @@ def fit(
     samples: Annotated[PeopleOfEachSex, Parameter(group=_POPULATION)] = SAMPLES,
     seed: Annotated[Seed, Parameter(group=_POPULATION)] = 0,
     plot: Annotated[Path | None, Parameter(group=_POPULATION)] = None,
-) -> int:
+) -> None:
     """Find the seat with which a rider can ride a design, joints within their moments' range, with the most power.
 
     That no seat within the limits suits is a result as well: what lacks, where in the turn, and what would help.
@@ -152,7 +151,6 @@ def fit(
     else:
         require_writable(out, "the design", ".toml", inputs)
         _show_seat(fit_seat(loaded, who.load(loaded), joint_moments, limits), ratio, out, options)
-    return 0
 
 
 def _show_seat(result: SeatFit, gear_ratio: float, out: Path | None, options: PrintOptions) -> None:

@@ -13,17 +13,15 @@ from fes_mj.common.writing import PICTURES, require_writable, write_text
 from fes_mj.moments.files import Measurement, load_measurement, load_moments, measured_files, moments_csv
 from fes_mj.moments.joint_moments import GROUPS, JointMoments
 
-_DEFAULTS = PrintOptions()
-
 
 def moments(
     file: str,
     /,
     *,
-    options: PrintOptions = _DEFAULTS,
+    options: PrintOptions = PrintOptions(),
     plot: Path | None = None,
     out: Out | None = None,
-) -> int:
+) -> None:
     """Show what is understood of a file of joint moments, and warn of what looks misread.
 
     Args:
@@ -46,7 +44,6 @@ def moments(
     if out:
         write_text(out, moments_csv(measurement.moments))
     options.show(measurement.summary, lambda: _print(measurement), plot=plot, moments=out)
-    return 0
 
 
 def _print(measurement: Measurement) -> None:

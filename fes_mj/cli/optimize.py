@@ -16,11 +16,11 @@ from fes_mj.linkage.design_file import design_toml, load_design
 from fes_mj.viewing.pages import require_page_packages
 
 if TYPE_CHECKING:
+    from fes_mj.moments.joint_moments import JointMoments
     from fes_mj.optimization.findings import Findings
     from fes_mj.optimization.optimize import Optimum
     from fes_mj.optimization.winner import Winner
 
-_DEFAULTS = SearchOptions()
 _RIDER_COLUMNS = ("thigh, m", "shank, m", "seat towards the crank, m", "seat up, m", "seat angle, deg", "power, W")
 
 
@@ -28,7 +28,7 @@ def optimize(
     kind: Literal["crt", "cdt"],
     /,
     *,
-    options: SearchOptions = _DEFAULTS,
+    options: SearchOptions = SearchOptions(),
     out: Out | None = None,
     report: Path | None = None,
 ) -> int:
@@ -49,29 +49,14 @@ def optimize(
     moments, compared_with = options.load_moments(), load_design(options.speeds_of)
     command = options.command(kind) + (f" -o {shell_word(out.name)}" if out else "")
     origin = f"Found by fes_mj {version('fes-mj')}:\n{command}"
-    from fes_mj.common.parallel import Workers
     from fes_mj.optimization.findings import Findings
-    from fes_mj.optimization.optimize import optimize as search
     from fes_mj.optimization.winner import assess
 
     findings = Findings(out, origin, options.recipe(kind)) if out else None
     try:
-        with progress_bar(f"{options.method}, searches", options.searches, options.silent) as advance:
-            optimum = search(
-                kind,
-                moments,
-                method=options.method,
-                budget=options.budget,
-                searches=options.searches,
-                seed=options.seed,
-                smooth=options.smooth,
-                workers=Workers(options.jobs, options.cluster),
-                findings=findings,
-                progress=advance,
-                **options.problem_options(),
-            )
+        optimum = _search(kind, moments, options, findings)
         # first: what was found stays, whatever becomes of the rest
-        files = _write(optimum, origin, findings, options) if findings else {}
+        files = _write(optimum, origin, findings.out, options) if findings else {}
         winner = assess(optimum.design, compared_with, moments, options.seed)
         if report:
             from fes_mj.optimization.page import page_html
@@ -98,41 +83,60 @@ def optimize(
     return 0 if winner.case.agrees else 1
 
 
-def _check_files(out: Path | None, report: Path | None, options: SearchOptions) -> None:
-    """Refuse files that could not or must not be written, before anything runs."""
-    inputs = options.inputs()
-    require_writable(out, "the design", ".toml", inputs)
-    for key, path in _beside(out, options).items() if out else ():
-        require_replaceable([path], f"the {key.partition('_')[0]}", inputs)
-    require_writable(report, "the page", ".html", inputs)
-    if report:
-        require_page_packages()
+def _search(kind: str, moments: JointMoments, options: SearchOptions, findings: Findings | None) -> Optimum:
+    """The best of all searches, with a bar that counts them."""
+    from fes_mj.common.parallel import Workers
+    from fes_mj.optimization.optimize import optimize as search
+
+    with progress_bar(f"{options.method}, searches", options.searches, options.silent) as advance:
+        return search(
+            kind,
+            moments,
+            method=options.method,
+            budget=options.budget,
+            searches=options.searches,
+            seed=options.seed,
+            smooth=options.smooth,
+            workers=Workers(options.jobs, options.cluster),
+            findings=findings,
+            progress=advance,
+            **options.problem_options(),
+        )
 
 
-def _beside(out: Path, options: SearchOptions) -> dict[str, Path]:
-    """What appears beside the design file: key of JSON -> path."""
-    files = {"model_file": out.with_suffix(".xml")}
+def _files(out: Path, options: SearchOptions) -> dict[str, Path]:
+    """The design file and what appears beside it: key of JSON -> path."""
+    files = {"design_file": out, "model_file": out.with_suffix(".xml")}
     if options.method == "nsga-ii":
         files["front_file"] = out.with_name(f"{out.stem}-front.csv")
     return files
 
 
-def _write(optimum: Optimum, origin: str, findings: Findings, options: SearchOptions) -> dict[str, str]:
-    """Write the design file, then, each once the one before is there, what appears beside it; key of JSON -> file."""
+def _check_files(out: Path | None, report: Path | None, options: SearchOptions) -> None:
+    """Refuse files that could not or must not be written, before anything runs."""
+    inputs = options.inputs()
+    require_writable(out, "the design", ".toml", inputs)
+    if out:
+        require_replaceable(
+            [path for path in _files(out, options).values() if path != out], "what is beside it", inputs
+        )
+    require_writable(report, "the page", ".html", inputs)
+    if report:
+        require_page_packages()
+
+
+def _write(optimum: Optimum, origin: str, out: Path, options: SearchOptions) -> dict[str, str]:
+    """Write the design file and what appears beside it, all or nothing; key of JSON -> file."""
     from fes_mj.simulation.export import mjcf_text
     from fes_mj.simulation.mjcf import build_mjcf
 
-    design = optimum.design
-    paths = {"design_file": findings.out, **_beside(findings.out, options)}
-    findings.write(design_toml(design, origin), findings.out)
-    options.name_files(design_file=findings.out)
-    texts = {"model_file": mjcf_text(build_mjcf(design))}
+    files, design = _files(out, options), optimum.design
+    texts = [design_toml(design, origin), mjcf_text(build_mjcf(design))]
     if optimum.front:
-        texts["front_file"] = optimum.front.as_csv()
-    for key, text in texts.items():
-        write_files({paths[key]: text}, unnamed=[paths[key]])
-        options.name_files(**{key: paths[key]})
-    return {key: str(path) for key, path in paths.items()}
+        texts.append(optimum.front.as_csv())
+    write_files(dict(zip(files.values(), texts, strict=True)), unnamed={*files.values()} - {out})
+    options.name_files(**files)
+    return {key: str(path) for key, path in files.items()}
 
 
 def _print(winner: Winner, optimum: Optimum) -> None:

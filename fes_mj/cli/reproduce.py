@@ -16,7 +16,7 @@ def reproduce(
     out: Out = Path("results"),
     svg: Flag = False,
     quiet: Annotated[bool, Parameter(alias="-q", negative="")] = False,
-) -> int:
+) -> None:
     """Compute the paper's tables and figures and write them beside the project's own.
 
     Args:
@@ -32,4 +32,3 @@ def reproduce(
     for path in paper.reproduce(out, svg, quiet):
         if not quiet:
             say(str(path))
-    return 0

@@ -85,14 +85,11 @@ class RideOptions(PrintOptions, MomentsOptions):
         )
 
 
-_DEFAULTS = RideOptions()
-
-
 def ride(
     design: DesignName,
     /,
     *,
-    options: RideOptions = _DEFAULTS,
+    options: RideOptions = RideOptions(),
     starts: Flag = False,
     out: Out | None = None,
     render: Path | None = None,

@@ -21,7 +21,6 @@ from fes_mj.simulation.time_step import LONGEST_TIMESTEP
 if TYPE_CHECKING:
     from fes_mj.crosscheck.turn_case import Case
 
-_DEFAULTS, _BEARINGS = RunOptions(), BearingOptions()
 _VIDEO = Group("Video", validator=needs("--render"))
 TURN_SHOWN = (0.1, 60.0)  # s, shortest and longest of a turn in a video
 
@@ -30,8 +29,8 @@ def simulate(
     design: DesignName,
     /,
     *,
-    options: RunOptions = _DEFAULTS,
-    bearings: BearingOptions = _BEARINGS,
+    options: RunOptions = RunOptions(),
+    bearings: BearingOptions = BearingOptions(),
     out: Out | None = None,
     timestep: Annotated[float | None, Parameter(validator=Number(gt=0, lte=LONGEST_TIMESTEP))] = None,
     turns: Annotated[int, Parameter(validator=Number(gte=1, lte=1000))] = 1,

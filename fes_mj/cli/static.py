@@ -13,17 +13,15 @@ from fes_mj.statics.friction import BearingLoss, Bearings
 from fes_mj.statics.joint_forces import JointForces
 from fes_mj.statics.turn import LegTurns, QuasiStatic, quasi_static
 
-_DEFAULTS, _BEARINGS = RunOptions(), BearingOptions()
-
 
 def static(
     design: DesignName,
     /,
     *others: DesignName,
-    options: RunOptions = _DEFAULTS,
-    bearings: BearingOptions = _BEARINGS,
+    options: RunOptions = RunOptions(),
+    bearings: BearingOptions = BearingOptions(),
     curves: Flag = False,
-) -> int:
+) -> None:
     """Mean crank power of a design by statics, without masses and without MuJoCo; of several beside each other.
 
     Args:
@@ -41,7 +39,6 @@ def static(
             lambda: _content(first, result, curves, friction),
             lambda: _print(first, result, curves, friction, options.verbose),
         )
-    return 0
 
 
 def _loss(result: LegTurns, bearings: Bearings | None) -> BearingLoss | None:

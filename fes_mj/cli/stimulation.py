@@ -14,8 +14,6 @@ from fes_mj.linkage.design import Design
 from fes_mj.linkage.design_file import load_design
 from fes_mj.riding.stimulation import CORE, ZERO, Window, stimulation as find_windows, summary, table_csv
 
-_DEFAULTS = PrintOptions()
-
 
 def stimulation(
     design: DesignName,
@@ -27,8 +25,8 @@ def stimulation(
     dims: Dims = "identified",
     csv: Path | None = None,
     plot: Path | None = None,
-    options: PrintOptions = _DEFAULTS,
-) -> int:
+    options: PrintOptions = PrintOptions(),
+) -> None:
     """When to stimulate: the crank angles at which each muscle group drives the crank, for a stimulator.
 
     Args:
@@ -56,7 +54,6 @@ def stimulation(
     if csv:
         write_text(csv, table_csv(loaded, windows))
     options.show(lambda: summary(loaded, windows), lambda: _print(loaded, windows), windows=csv, plot=plot)
-    return 0
 
 
 def _print(design: Design, windows: list[Window]) -> None:

@@ -17,7 +17,6 @@ from fes_mj.sweep.study import Study, label, load_study
 if TYPE_CHECKING:
     from fes_mj.sweep.sweep import Sweep
 
-_DEFAULTS = PrintOptions()
 MOST_PLOTTED = 10**6  # points
 
 
@@ -31,8 +30,8 @@ def sweep(
     cluster: str | None = None,
     csv: Path | None = None,
     plot: Path | None = None,
-    options: PrintOptions = _DEFAULTS,
-) -> int:
+    options: PrintOptions = PrintOptions(),
+) -> None:
     """Evaluate every point of a study; started again with the same folder, it does only what is missing.
 
     Args:
@@ -65,7 +64,6 @@ def sweep(
 
         write_plot(sweep, plot)
     options.show(lambda: summary, lambda: _print(summary, study.stem, sweep.study), rows=csv, plot=plot)
-    return 0
 
 
 def _run(sweep: "Sweep", workers: Workers, name: str, silent: bool) -> dict[str, Any]:

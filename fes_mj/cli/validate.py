@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from fes_mj.verification.case import VerificationCase
     from fes_mj.verification.faults import Detection
 
-_DEFAULTS = RunOptions()
 _REPORT = Group("Report", validator=needs("--report"))
 # Where no design is named, faults are injected into this one: all bodies, loops and parameters exist in it.
 FAULTY_DESIGN = "d1"
@@ -32,7 +31,7 @@ FAULTY_DESIGN = "d1"
 
 def validate(
     *designs: DesignName,
-    options: RunOptions = _DEFAULTS,
+    options: RunOptions = RunOptions(),
     quick: Flag = False,
     faults: Flag = False,
     report: Annotated[Path | None, Parameter(group=_REPORT)] = None,

@@ -5,7 +5,6 @@ was stopped is done again from its start; whatever happens in between, the end i
 """
 
 import dataclasses
-import glob
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -114,14 +113,9 @@ class Findings:
             results[int(path.stem.partition("-")[2])] = Result(np.array(x), merit, evaluations, np.array(history))
         return results
 
-    def write(self, text: str, path: Path) -> None:
-        """Put a whole file in place by way of the folder: a kill leaves nothing beside the design file."""
-        write_text(self.folder / path.name, text)
-        (self.folder / path.name).replace(path)
-
     def remove(self) -> None:
         """Remove the folder, as all is finished."""
-        for pattern in ("recipe.json", "best*", "search-*.json", f"{glob.escape(self.out.stem)}*", ".*"):
+        for pattern in ("recipe.json", "best*", "search-*.json", ".*"):
             for path in self.folder.glob(pattern):
                 path.unlink(missing_ok=True)
         if not any(self.folder.iterdir()):

@@ -12,6 +12,7 @@ from xml.sax.saxutils import escape
 import numpy as np
 
 from fes_mj.common.errors import InputError
+from fes_mj.common.reading import DATA, read_toml
 from fes_mj.common.text import printable
 from fes_mj.common.writing import csv_text, require_replaceable, require_writable, write_files
 from fes_mj.linkage import kinematics
@@ -33,41 +34,16 @@ CAMERA_SIDE = (-0.55, 0.80, 0.25)  # of the oblique camera: from the front right
 LIGHT = (-0.5, 1.0, 3.0)  # m from the middle of the model
 FLOOR_GAP = 0.1  # m below the lowest point of the turn
 
-# Attribute -> the comment above its first line.
-_COMMENTS = {
-    'integrator="discrete"': "A turn is whole steps; `discrete` (MuJoCo 3.13 or newer) bears the stiff servo.",
-    'integrator="RK4"': "Nothing holds the crank, and Runge-Kutta keeps its energy within 0.5 % over 5 s.",
-    'integrator="implicitfast"': "The crank is laden with so much inertia that one evaluation a step keeps the energy.",
-    "<geom contype": "Geoms are pictures: they neither weigh nor touch.",
-    "<site quat": "Turned, as centres of mass are, or the compiler would swallow offsets below 1e-6 m.",
-    "<equality solref": "With MuJoCo's defaults the loops open by up to 14.4 mm and the mean power is lost.",
-    "<inertial": "Planar: only the moment about y acts; the other two repeat it.",
-    "<connect": "Loops are cut at passive pins that carry no drive, no limit and no friction.",
-    "<motor": "Net joint moments, N m, extension positive.",
-    "<velocity": "Holds the cadence (rad/s); its force belongs to the step before, so read crank_torque instead.",
-    'armature="1000000"': "The flywheel holds the cadence where the integrator bears no stiff servo.",
-    " damping=": "The flywheel has the tricycle's inertia; the brake takes the muscles' mean power at the cadence.",
-    "<framepos": "Loop gaps, m.",
-    "<torque": "Crank moment on the load: the y component, N m.",
-    "<key ": "Assembled exactly at crank angle 0, moving at the cadence.",
-}
-# The same for a model on the road, beside these or instead.
-_ROAD_COMMENTS = {
-    'integrator="discrete"': "`discrete` (MuJoCo 3.13 or newer) bears the stiff loops and the stiff drivetrain.",
-    'name="road"': "Metres ridden: rims are the armature, rolling resistance the friction, air the damping.",
-    " damping=": "",
-    " limited=": "Road less crank, rad. A freewheel forgets: after each step raise its lower limit to its length.",
-}
-
 
 def mjcf_text(spec: Spec) -> str:
     """A model of build_mjcf as commented MJCF that reloads bit for bit."""
     heading = f"{spec.comment}. Written by fes_mj {version('fes-mj')}; m, kg, s, rad."
     spec.comment = re.sub("-(?=-)", "- ", heading)  # no comment may hold two hyphens in a row
     spec.compile()
-    on_road = any(joint.name == ROAD for joint in spec.joints)
-    known = _COMMENTS | (_ROAD_COMMENTS if on_road else {})
-    lines, pending = [], {mark: text for mark, text in known.items() if text}
+    kinds = ("model", "road") if any(joint.name == ROAD for joint in spec.joints) else ("model",)
+    comments = read_toml(DATA / "mjcf_comments.toml", "comments")
+    texts = {mark: text for kind in kinds for mark, text in comments.section(kind).content.items()}
+    lines, pending = [], {mark: text for mark, text in texts.items() if text}
     for line in spec.to_xml().splitlines():
         indent = line[: len(line) - len(line.lstrip())]
         lines += [f"{indent}<!-- {pending.pop(mark)} -->" for mark in [*pending] if mark in line]
