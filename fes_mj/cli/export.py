@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 
 from cyclopts import Parameter
 
+import fes_mj
 from fes_mj.cli.options import DesignName, Flag, LoadOptions, Out
 from fes_mj.common.console import say
 
@@ -32,12 +33,11 @@ def export(
             `discrete`, a flywheel holds the cadence. Give --variant again to combine them.
         scene: Also write scene.xml beside the model: floor, light and camera.
     """
-    from fes_mj.simulation.export import export as export_model
     from fes_mj.simulation.variants import variant_options
 
     variants = [*(variant or ()), *(["two-legs"] if options.legs == 2 else [])]
     loaded = replace(options, legs=variant_options(variants).get("legs", 1)).load(design)
-    files = export_model(
+    files = fes_mj.export(
         loaded.design,
         loaded.moments,
         out,
@@ -46,5 +46,5 @@ def export(
         scene=scene,
         inputs=options.inputs(design),
     )
-    for what, path in files.items():
-        say(f"{what}: {path}")
+    for content, path in files.items():
+        say(f"{content}: {path}")

@@ -6,17 +6,18 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
+import fes_mj
 from fes_mj.cli.options import Out
 from fes_mj.cli.process import interruption_code
 from fes_mj.cli.search_options import SearchOptions, shell_word
 from fes_mj.common.console import errors, print_table, progress_bar, say
+from fes_mj.common.parallel import Workers
 from fes_mj.common.text import printable
 from fes_mj.common.writing import require_replaceable, require_writable, write_files, write_text
 from fes_mj.linkage.design_file import design_toml, load_design
 from fes_mj.viewing.pages import require_page_packages
 
 if TYPE_CHECKING:
-    from fes_mj.moments.joint_moments import JointMoments
     from fes_mj.optimization.findings import Findings
     from fes_mj.optimization.optimize import Optimum
     from fes_mj.optimization.winner import Winner
@@ -83,13 +84,10 @@ def optimize(
     return 0 if winner.case.agrees else 1
 
 
-def _search(kind: str, moments: JointMoments, options: SearchOptions, findings: Findings | None) -> Optimum:
+def _search(kind: str, moments: fes_mj.JointMoments, options: SearchOptions, findings: Findings | None) -> Optimum:
     """The best of all searches, with a bar that counts them."""
-    from fes_mj.common.parallel import Workers
-    from fes_mj.optimization.optimize import optimize as search
-
     with progress_bar(f"{options.method}, searches", options.searches, options.silent) as advance:
-        return search(
+        return fes_mj.optimize(
             kind,
             moments,
             method=options.method,
@@ -116,25 +114,24 @@ def _check_files(out: Path | None, report: Path | None, options: SearchOptions) 
     """Refuse files that could not or must not be written, before anything runs."""
     inputs = options.inputs()
     require_writable(out, "the design", ".toml", inputs)
-    if out:
-        require_replaceable(
-            [path for path in _files(out, options).values() if path != out], "what is beside it", inputs
-        )
+    for key, path in _files(out, options).items() if out else ():
+        if path != out:
+            require_replaceable([path], f"the {key.partition('_')[0]}", inputs)
     require_writable(report, "the page", ".html", inputs)
     if report:
         require_page_packages()
 
 
 def _write(optimum: Optimum, origin: str, out: Path, options: SearchOptions) -> dict[str, str]:
-    """Write the design file and what appears beside it, all or nothing; key of JSON -> file."""
+    """Write the design file, then, all or nothing, what appears beside it; key of JSON -> file."""
     from fes_mj.simulation.export import mjcf_text
-    from fes_mj.simulation.mjcf import build_mjcf
 
     files, design = _files(out, options), optimum.design
-    texts = [design_toml(design, origin), mjcf_text(build_mjcf(design))]
+    write_text(out, design_toml(design, origin))
+    texts = {files["model_file"]: mjcf_text(fes_mj.build_mjcf(design))}
     if optimum.front:
-        texts.append(optimum.front.as_csv())
-    write_files(dict(zip(files.values(), texts, strict=True)), unnamed={*files.values()} - {out})
+        texts[files["front_file"]] = optimum.front.as_csv()
+    write_files(texts, unnamed=texts.keys())
     options.name_files(**files)
     return {key: str(path) for key, path in files.items()}
 

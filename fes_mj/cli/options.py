@@ -121,9 +121,9 @@ class PrintOptions:
 
     def name_files(self, **files: Path | None) -> None:
         """Say where what was written is, unless JSON or nothing is printed."""
-        for what, path in files.items():
+        for content, path in files.items():
             if path and not self.silent:
-                say(f"{what.replace('_', ' ')}: {path}")
+                say(f"{content.replace('_', ' ')}: {path}")
 
 
 @Parameter(name="*")

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from cyclopts import Group, Parameter
 from cyclopts.validators import Number, mutually_exclusive
 
+import fes_mj
 from fes_mj.cli.options import DesignName, Dims, Flag, Lag, MomentsOptions, Out, PrintOptions, require_lag, speed_at
 from fes_mj.cli.tables import beside, conclude_checks, or_dash, print_checks, what_moves
 from fes_mj.common.console import print_table, say
@@ -22,7 +23,6 @@ from fes_mj.moments.torque_velocity import load_torque_velocity
 from fes_mj.riding.ride import Ride, Road
 
 if TYPE_CHECKING:
-    from fes_mj.crosscheck.ride_case import RideCase
     from fes_mj.riding.starts import Starts
     from fes_mj.riding.trace import Trace
 
@@ -109,13 +109,7 @@ def ride(
     suffixes = ("json", "csv", "xml", *(["svg"] if starts else []))
     stem = f"{loaded.design.name}-{loaded.moments.name}-ride"
     paths = require_results(out, stem, suffixes, inputs) if out else {}
-    from fes_mj.crosscheck.ride_case import RideCase
-
-    case, result = RideCase(loaded), None
-    if starts:
-        from fes_mj.riding.starts import starts as find_starts
-
-        result = find_starts(loaded)
+    case, result = fes_mj.RideCase(loaded), fes_mj.starts(loaded) if starts else None
     content = case.summary() | (result.summary() if result else {})
     if paths:
         write_results(dict(zip(paths.values(), _texts(case, result, json_text(content)), strict=True)))
@@ -128,7 +122,7 @@ def ride(
     return 0 if case.agrees else 1
 
 
-def _texts(case: RideCase, starts: Starts | None, result: str) -> list[str]:
+def _texts(case: fes_mj.RideCase, starts: Starts | None, result: str) -> list[str]:
     """What is written: the result, the ride, the model, the ring of starts."""
     from fes_mj.simulation.export import mjcf_text
     from fes_mj.simulation.road_mjcf import build_road_mjcf
@@ -141,7 +135,7 @@ def _texts(case: RideCase, starts: Starts | None, result: str) -> list[str]:
     return texts
 
 
-def _print(case: RideCase, starts: Starts | None) -> None:
+def _print(case: fes_mj.RideCase, starts: Starts | None) -> None:
     ride, run = case.ride, case.simulation.trace
     road = f"{ride.transmission}{' gear' if ride.fixed else ''}, {100 * ride.road.slope:g} % slope"
     title = f"{what_moves(ride.design, ride.moments)}; {road}"

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import numpy as np
 from cyclopts import Group, Parameter
 from cyclopts.validators import Number
 
+import fes_mj
 from fes_mj.budget.budget import error_budget, summary
 from fes_mj.cli import tables
 from fes_mj.cli.options import BearingOptions, DesignName, Flag, Out, RunOptions, needs
@@ -17,9 +18,6 @@ from fes_mj.common.errors import InputError
 from fes_mj.common.units import RPM
 from fes_mj.common.writing import json_text, require_results, require_writable, write_results
 from fes_mj.simulation.time_step import LONGEST_TIMESTEP
-
-if TYPE_CHECKING:
-    from fes_mj.crosscheck.turn_case import Case
 
 _VIDEO = Group("Video", validator=needs("--render"))
 TURN_SHOWN = (0.1, 60.0)  # s, shortest and longest of a turn in a video
@@ -53,12 +51,10 @@ def simulate(
     require_writable(render, "the video", ".mp4", inputs)
     if speed is not None:
         _check_speed(speed, loaded.cadence)
-    from fes_mj.crosscheck.turn_case import Case, turn_summary
-
-    case = Case(*loaded, timestep, turns, options.legs, bearings.load())
+    case = fes_mj.Case(*loaded, timestep, turns, options.legs, bearings.load())
     stem = f"{case.design.name}-{case.moments.name}"
     paths = require_results(out, stem, ("json", "csv", "xml"), inputs) if out else {}
-    content = turn_summary(case) | summary(error_budget(*case.statics.turns)) if paths or options.json else {}
+    content = case.summary() | summary(error_budget(*case.statics.turns)) if paths or options.json else {}
     if paths:
         write_results(dict(zip(paths.values(), (json_text(content), *_texts(case)), strict=True)))
     options.show(lambda: content, lambda: _print(case, options.verbose))
@@ -84,9 +80,7 @@ def _check_speed(speed: float, cadence: float) -> None:
         )
 
 
-def _print(case: Case, verbose: bool) -> None:
-    from fes_mj.crosscheck.turn_case import turn_summary
-
+def _print(case: fes_mj.Case, verbose: bool) -> None:
     run = case.simulation
     dynamic = (
         tables.with_error(run.power_mean, case.statics.power_sd),  # the mean is the same functional of the moments
@@ -98,7 +92,7 @@ def _print(case: Case, verbose: bool) -> None:
     heads = ("", *(f"quasi-static{side}" for side in sides), "dynamic")
     print_table(tables.heading(case.static, len(run.legs)), heads, [(*row, measured) for row, measured in rows])
     tables.print_budget(*case.statics.turns)
-    turn = tables.beside(*map(tables.turn_rows, (case.static.summary(), turn_summary(case))))
+    turn = tables.beside(*map(tables.turn_rows, (case.static.summary(), case.summary())))
     together = "dynamic" if len(run.legs) == 1 else "dynamic, both legs"
     print_table("The turn", ("", f"quasi-static{sides[0]}", together), turn)
     tables.print_forces(case.joint_forces)
@@ -113,12 +107,10 @@ def _print(case: Case, verbose: bool) -> None:
     tables.conclude_checks("Dynamic and static", case.checks, f": mean power differs by {case.difference_text}")
 
 
-def _texts(case: Case) -> tuple[str, str]:
+def _texts(case: fes_mj.Case) -> tuple[str, str]:
     """The cycle and the model."""
-    from fes_mj.crosscheck.turn_case import cycle_csv
     from fes_mj.simulation.export import mjcf_text
-    from fes_mj.simulation.mjcf import build_mjcf
 
-    spec = build_mjcf(case.design, cadence=case.cadence, timestep=case.simulation.timestep, legs=case.legs)
+    spec = fes_mj.build_mjcf(case.design, cadence=case.cadence, timestep=case.simulation.timestep, legs=case.legs)
     case.steps.edit_model(spec)
-    return cycle_csv(case), mjcf_text(spec)
+    return case.cycle_csv(), mjcf_text(spec)

@@ -160,46 +160,44 @@ class Case(Brief, Setup):
         """Whether every check holds."""
         return all(check.ok for check in self.checks)
 
-
-def turn_summary(case: Case) -> dict[str, Any]:
-    """The result as JSON names and units it."""
-    run = case.simulation
-    static = case.static.summary() | case.joint_forces.summary()
-    return static | {
-        "power_mean_W": run.power_mean,
-        "work_per_turn_J": 2 * np.pi * run.power_mean / run.cadence,
-        "knee_range_deg": run.joint_range_deg.knee,
-        "hip_range_deg": run.joint_range_deg.hip,
-        **power_characteristics(run.power, run.turns),
-        "power_sd_W": case.statics.power_sd,
-        "static_power_mean_W": case.static_power_mean,
-        "friction_loss_W": case.friction_loss,
-        "relative_difference": case.relative_difference,
-        "loop_gap_max_m": run.loop_gap_max,
-        "cadence_ripple": run.cadence_ripple,
-        "agrees": case.agrees,
-        "checks": [check.as_json() for check in case.checks],
-        "legs": len(run.legs),
-        "turns": run.turns,
-        "timestep_s": run.timestep,
-        "loop_force_max_N": {loop: float(np.abs(force).max()) for loop, force in run.loop_force.items()},
-        "energy_J": run.energy.as_json(),
-        "versions": versions("fes-mj", "mujoco", "numpy"),
-    }
-
-
-def cycle_csv(case: Case) -> str:
-    """The measured turns as CSV, a row a time step."""
-    run = case.simulation
-    return csv_text(
-        {
-            "crank_angle_deg": np.degrees(run.crank_angle),
-            FROM_TOP: turning(case.design).degrees_from_top(run.crank_angle),
-            "crank_power_W": run.power,
-            "inverse_dynamics_power_W": case.reference_power(),
-            "quasi_static_power_W": case.reference_power(mass_scale=0.0),
-            **{f"{name}_deg": np.degrees(angle) for name, angle in run.joint_angle.items()},
-            **{f"{name}_Nm": moment for name, moment in run.joint_moment.items()},
-            **{f"{name}_gap_m": gap for name, gap in run.loop_gap.items()},
+    def summary(self) -> dict[str, Any]:
+        """The result as JSON names and units it."""
+        run = self.simulation
+        static = self.static.summary() | self.joint_forces.summary()
+        return static | {
+            "power_mean_W": run.power_mean,
+            "work_per_turn_J": 2 * np.pi * run.power_mean / run.cadence,
+            "knee_range_deg": run.joint_range_deg.knee,
+            "hip_range_deg": run.joint_range_deg.hip,
+            **power_characteristics(run.power, run.turns),
+            "power_sd_W": self.statics.power_sd,
+            "static_power_mean_W": self.static_power_mean,
+            "friction_loss_W": self.friction_loss,
+            "relative_difference": self.relative_difference,
+            "loop_gap_max_m": run.loop_gap_max,
+            "cadence_ripple": run.cadence_ripple,
+            "agrees": self.agrees,
+            "checks": [check.as_json() for check in self.checks],
+            "legs": len(run.legs),
+            "turns": run.turns,
+            "timestep_s": run.timestep,
+            "loop_force_max_N": {loop: float(np.abs(force).max()) for loop, force in run.loop_force.items()},
+            "energy_J": run.energy.as_json(),
+            "versions": versions("fes-mj", "mujoco", "numpy"),
         }
-    )
+
+    def cycle_csv(self) -> str:
+        """The measured turns as CSV, a row a time step."""
+        run = self.simulation
+        return csv_text(
+            {
+                "crank_angle_deg": np.degrees(run.crank_angle),
+                FROM_TOP: turning(self.design).degrees_from_top(run.crank_angle),
+                "crank_power_W": run.power,
+                "inverse_dynamics_power_W": self.reference_power(),
+                "quasi_static_power_W": self.reference_power(mass_scale=0.0),
+                **{f"{name}_deg": np.degrees(angle) for name, angle in run.joint_angle.items()},
+                **{f"{name}_Nm": moment for name, moment in run.joint_moment.items()},
+                **{f"{name}_gap_m": gap for name, gap in run.loop_gap.items()},
+            }
+        )

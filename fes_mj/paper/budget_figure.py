@@ -24,8 +24,8 @@ def budget_figure(budgets: Budgets) -> Figure:
         _curves(curves, budgets, group)
         for ax, title in ((bars, "everything drawn"), (curves, "power per TRT's")):
             ax.set_title(f"{group.upper()}, {title}", loc="left", fontsize=9, weight="bold")
-    for (first, last), what in zip(axes, ("share of the variance, %", "probability of more, %"), strict=True):
-        first.set_ylabel(what)
+    for (first, last), label in zip(axes, ("share of the variance, %", "probability of more, %"), strict=True):
+        first.set_ylabel(label)
         last.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), reverse=last is axes[0, 1])
     return figure
 

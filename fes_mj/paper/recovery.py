@@ -48,11 +48,11 @@ def statement_table(known: Known) -> Rows:
 @table("knee")
 def knee_table(known: Known) -> Rows:
     """Section 7.2's two knee moments, which are evidence of one group, in both."""
-    for name, direction, said in (("extending", 1.0, 20.0), ("flexing", -1.0, -1.0)):
+    for name, direction, printed in (("extending", 1.0, 20.0), ("flexing", -1.0, -1.0)):
         weights = of_joint("knee", fourier(PAPER_TRICYCLE.source_angle("knee", np.radians(73.0), direction)))
         for group in GROUPS:
             cells = (with_sd(*recovered.posteriors[group].predict(weights), 1) for recovered in known.by_basis.values())
-            yield name, group, said, *cells, "used" if group == "p1p2" else "not used"
+            yield name, group, printed, *cells, "used" if group == "p1p2" else "not used"
 
 
 @table("rounding")
@@ -66,10 +66,10 @@ def rounding_table(known: Known) -> Rows:
 def left_out_table(known: Known) -> Rows:
     """Printed powers predicted without themselves, by the numbers alone and with the text."""
     for out in known.predictions:
-        said, (numbers, text) = out.row.value, out.scores
-        percent = 100 * (out.numbers[0] / said - 1)
+        printed, (numbers, text) = out.row.value, out.scores
+        percent = 100 * (out.numbers[0] / printed - 1)
         names = (out.row.group, out.row.design.upper(), out.title)
-        yield *names, said, *out.numbers, percent, numbers, *out.text, text
+        yield *names, printed, *out.numbers, percent, numbers, *out.text, text
 
 
 @table("calibration")

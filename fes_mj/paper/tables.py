@@ -22,11 +22,11 @@ POWER_ROUNDING = 0.005  # W, Table 1 is rounded to 0.01 W
 def power_table(runs: Runs) -> Rows:
     """Mean crank power of one leg: paper, printed and identified dimensions, dynamic, and what the difference means."""
     for (name, group), static in runs.static.items():
-        said, deviation = table1()[name].power[group], static.power_sd
+        paper, deviation = table1()[name].power[group], static.power_sd
         assert deviation is not None
         printed, dynamic = runs.printed.get((name, group)), runs.dynamic[name, group, 1].simulation
-        difference, of_print = dynamic.power_mean - said, f"{printed.power_mean:.2f}" if printed else "cannot turn"
-        powers = (said, of_print, static.power_mean, deviation, dynamic.power_mean, difference)
+        difference, of_print = dynamic.power_mean - paper, f"{printed.power_mean:.2f}" if printed else "cannot turn"
+        powers = (paper, of_print, static.power_mean, deviation, dynamic.power_mean, difference)
         yield name.upper(), group, *powers, explained_by(difference, deviation)
 
 
@@ -41,10 +41,10 @@ def gain_table(runs: Runs) -> Rows:
     """Power of every six-bar per the TRT's: paper, ours, and the split into cadence and work per turn."""
     for name, group in product(SIX_BARS, GROUPS):
         result, trt = runs.static[name, group], runs.static["trt", group]
-        said = table1()[name].power[group] / table1()["trt"].power[group]
+        paper = table1()[name].power[group] / table1()["trt"].power[group]
         gain = result.power_mean / trt.power_mean
         cadence, work = result.cadence / trt.cadence, result.work_per_turn / trt.work_per_turn
-        yield name.upper(), group, said, gain, ratio_sd(result, trt), cadence, work
+        yield name.upper(), group, paper, gain, ratio_sd(result, trt), cadence, work
 
 
 @table("motion", group=GROUPS)

@@ -64,15 +64,11 @@ def shares(curves: FloatArray, leg: float, muscles: str) -> tuple[FloatArray, Fl
 @table("share", reading=[f"{reading}, {basis}" for reading in ("net", "concentric") for basis in BASES])
 def share_table(known: Known) -> Rows:
     """What the abstract says beside both readings, by curves of the numbers alone and with the text."""
-    for said in read_toml(TEXT, "statements").content["share"]:
-        group, muscles = said["group"], said["muscles"]
-        counted = [shares(recovered.curves[group], said["leg_m"], muscles) for recovered in known.by_basis.values()]
+    for row in read_toml(TEXT, "statements").content["share"]:
+        group, muscles = row["group"], row["muscles"]
+        counted = [shares(recovered.curves[group], row["leg_m"], muscles) for recovered in known.by_basis.values()]
         values = (basis for reading in zip(*counted, strict=True) for basis in reading)
         # a ratio can be anything where its denominator nears 0, so no sd, but half of what two thirds of them span
         spans = (np.quantile(share, (1 / 6, 1 / 2, 5 / 6)) for share in values)
-        yield (
-            group,
-            muscles,
-            float(said["value"]),
-            *(with_sd(middle, (high - low) / 2, 0) for low, middle, high in spans),
-        )
+        cells = (with_sd(middle, (high - low) / 2, 0) for low, middle, high in spans)
+        yield group, muscles, float(row["value"]), *cells

@@ -134,5 +134,5 @@ def export(
         "table": sidecar_text(design, moments, cadence, options.get("legs", 1)),
         "scene": scene_text(design, out.name),
     }
-    write_files({file: texts[what] for what, file in files.items()}, unnamed={*files.values()} - {out})
+    write_files({file: texts[content] for content, file in files.items()}, unnamed={*files.values()} - {out})
     return files

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from fes_mj.crosscheck.ride_case import RideCase
-from fes_mj.crosscheck.turn_case import Case, turn_summary
+from fes_mj.crosscheck.turn_case import Case
 from fes_mj.riding.ride import TRANSMISSIONS, Ride, Road
 from fes_mj.verification import energy
 from fes_mj.verification.references import Curves, differences, exact_curves
@@ -16,7 +16,7 @@ from fes_mj.verification.refinement import refine
 STEEP = Road(slope=0.15)  # no leg climbs it: the tricycle stops and rolls back
 STEEP_DURATION = 3.0  # s
 RIDE_DURATION = 5.0  # s: some eight turns; studies/ride_verification.py rides a minute
-# Of turn_summary, what a table of runs shows.
+# Of a summary, what a table of runs shows.
 _ROW = (
     *("design", "group", "cadence_rpm", "timestep_s", "power_mean_W", "static_power_mean_W", "relative_difference"),
     *("work_per_turn_J", "loop_gap_max_m"),
@@ -79,7 +79,7 @@ class VerificationCase(Case):
 
     def row(self) -> dict[str, Any]:
         """The case as the row of a table of runs."""
-        return {key: value for key, value in turn_summary(self).items() if key in _ROW} | {
+        return {key: value for key, value in self.summary().items() if key in _ROW} | {
             "numerical_uncertainty_W": self.uncertainty
         }
 

@@ -108,8 +108,8 @@ def write_video(path: Path, frames: Iterable[Picture], count: int, quiet: bool =
             copy = ["-v", "error", "-y", "-stream_loop", str(repeats - 1), "-i", str(once), "-c", "copy", str(beside)]
             subprocess.run([encoder.get_ffmpeg_exe(), *copy], check=True, capture_output=True, text=True)
         except (RuntimeError, BrokenPipeError, subprocess.CalledProcessError) as error:  # with words or without
-            said = error.stderr if isinstance(error, subprocess.CalledProcessError) else str(error)
-            reason = said.strip().rpartition("] ")[2].strip()
+            message = error.stderr if isinstance(error, subprocess.CalledProcessError) else str(error)
+            reason = message.strip().rpartition("] ")[2].strip()
             raise InputError(f"{path}: cannot be written: the encoder stopped: {reason}") from None
 
 

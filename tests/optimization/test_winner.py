@@ -7,7 +7,6 @@ import pytest
 
 import fes_mj
 from fes_mj.common.errors import InputError
-from fes_mj.crosscheck.turn_case import turn_summary
 from fes_mj.linkage.kinematics import solve
 from fes_mj.optimization.evenness import RippleLimit
 from fes_mj.optimization.optimize import run_searches
@@ -31,7 +30,7 @@ def test_smoothness_is_that_of_the_exact_dynamics(winner: Winner) -> None:
     exact, said = winner.case.reference_power(), winner.smoothness
     assert said["power_lowest_W"] == pytest.approx(exact.min(), abs=0.5)
     assert said["power_highest_W"] == pytest.approx(exact.max(), abs=0.5)
-    assert said["power_peak_to_peak_W"] == pytest.approx(turn_summary(winner.case)["power_peak_to_peak_W"], rel=1e-12)
+    assert said["power_peak_to_peak_W"] == pytest.approx(winner.case.summary()["power_peak_to_peak_W"], rel=1e-12)
     population = RippleLimit(1.0, MOMENTS).ripple(winner.design)[0]
     assert said["speed_ripple"] == pytest.approx(population, rel=0.01)  # of 120 angles, see test_ripple
 

@@ -5,7 +5,6 @@ import sys
 import pytest
 
 import fes_mj
-from fes_mj.crosscheck.turn_case import turn_summary
 from fes_mj.simulation import stepping
 from fes_mj.verification.case import VerificationCase
 from fes_mj.verification.suite import FULL, verify
@@ -29,5 +28,5 @@ def test_a_full_verification_makes_few_runs(monkeypatch: pytest.MonkeyPatch) -> 
     needed = len(runs)
     assert 0 < needed <= MOST_RUNS
     assert list(verify(case, FULL)) == checks
-    _ = case.as_json(), case.curves, case.uncertainty, turn_summary(case)
+    _ = case.as_json(), case.curves, case.uncertainty, case.summary()
     assert len(runs) == needed  # tables and reports simulate nothing again
