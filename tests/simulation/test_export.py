@@ -126,9 +126,9 @@ def test_a_comment_stands_where_it_belongs(said: str) -> None:
 @pytest.mark.parametrize("name", DESIGNS)
 def test_every_comment_stands_in_the_file_and_no_number_is_shortened(name: str) -> None:
     text = mjcf_text(build_mjcf(load_design(name)))
-    assert text.count("<!--") == 11  # the heading and what a model with a servo has
+    assert text.count("<!--") == 12  # the heading and what a model with a servo has
     compatible = build_mjcf(load_design(name), options=ModelOptions(compatible=True))
-    assert mjcf_text(compatible).count("<!--") == 10  # no discrete, no servo
+    assert mjcf_text(compatible).count("<!--") == 11  # no discrete, no servo
     assert f'timestep="{float(build_mjcf(load_design(name)).option.timestep)!r}"' in text
 
 
