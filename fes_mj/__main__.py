@@ -2,4 +2,5 @@
 
 from fes_mj.cli import main
 
-main()
+if __name__ == "__main__":  # the page's processes import this module as one of another name
+    main()

@@ -14,7 +14,8 @@ NEEDS_BROWSER = [
     pytest.mark.process,
     pytest.mark.skipif(not CHROMIUM, reason="there is no Chromium: apt-get install chromium, or name one by CHROMIUM"),
 ]
-DESKTOP, PHONE = (1400, 900), (390, 844)
+DESKTOP, LAPTOP, PHONE = (1920, 1080), (1280, 800), (390, 844)
+SCREENS = (DESKTOP, LAPTOP, PHONE)
 
 
 @pytest.fixture(scope="module")

@@ -8,18 +8,20 @@ from typing import Any
 
 from fes_mj.common.errors import InputError
 from fes_mj.common.reading import Section, is_text
-from fes_mj.common.style import COLOURS, SERIES
-from fes_mj.explore.dimensions import content_of, design_of, dimensions
+from fes_mj.common.style import COLOURS, MOMENTS
+from fes_mj.explore.dimensions import content_of, design_of, dimensions, of_kind
+from fes_mj.explore.pose import plane
 from fes_mj.explore.runs import RUNS
 from fes_mj.explore.turn import turn
 from fes_mj.explore.uploads import Uploads, moments_of_bundle, read_upload
-from fes_mj.linkage.design import SEXES, Design
+from fes_mj.linkage.design import ARCHITECTURES, BRANCHES, SEXES, Design
 from fes_mj.linkage.design_file import DESIGNS, design_toml, load_design
 from fes_mj.linkage.legs import LEGS
 from fes_mj.linkage.riders import populations
 from fes_mj.linkage.turning import turning
 from fes_mj.moments.files import load_moments
 from fes_mj.moments.joint_moments import GROUPS, JointMoments
+from fes_mj.optimization.limits import load_limits
 from fes_mj.riding.ride import TRANSMISSIONS
 from fes_mj.simulation.export import mjcf_text
 from fes_mj.simulation.mjcf import build_mjcf
@@ -39,7 +41,7 @@ class Answers:
         self.design, self.chosen = design, moments.name
         self.shared = {group: load_moments(group) for group in GROUPS} | {moments.name: moments}
         self.uploads = Uploads()
-        questions = (self.start, self.turn, self.rider, self.save, self.model, self.open_design, self.open_moments)
+        questions = (self.start, self.turn, self.change, self.save, self.model, self.open_design, self.open_moments)
         self.by_name: dict[str, Callable[[Section], Answer]] = {
             question.__name__.replace("_", "-"): question for question in questions
         }
@@ -53,7 +55,8 @@ class Answers:
             "dimensions": dimensions(),
             "moments": [*self._moments(question)],
             "chosen": self.chosen,
-            "series": SERIES,
+            "space": plane(load_limits().polygon),
+            "series": MOMENTS,
             "colours": COLOURS,
         }
 
@@ -61,13 +64,17 @@ class Answers:
         """Motion, curves and numbers of a design under all moments that the page knows."""
         return turn(_design(question), self._moments(question), _legs(question))
 
-    def rider(self, question: Section) -> Answer:
-        """A design with the rider of a percentile of one sex."""
-        sex = question.choice("sex", SEXES)
-        percentile = question.number("percentile", 1, 99, "a percentile from 1 to 99")
-        people = next(people for people in populations().values() if people.sex == sex)
-        rider, design = people.rider(percentile), _design(question)
-        return {"design": content_of(design.with_rider(thigh=rider.thigh, shank=rider.shank, mass=rider.mass, sex=sex))}
+    def change(self, question: Section) -> Answer:
+        """A design of another "kind" or "branch", or with the rider of a "percentile" of a "sex"; as it is without."""
+        design = _design(question)
+        design = of_kind(design, question.choice("kind", ARCHITECTURES, design.linkage.kind))
+        design = design.with_linkage(branch=question.choice("branch", BRANCHES, design.linkage.branch))
+        if "percentile" in question.content:
+            sex = question.choice("sex", SEXES, design.rider.sex)
+            percentile = question.number("percentile", 1, 99, "a percentile from 1 to 99")
+            rider = next(people for people in populations().values() if people.sex == sex).rider(percentile)
+            design = design.with_rider(thigh=rider.thigh, shank=rider.shank, mass=rider.mass, sex=sex)
+        return {"design": content_of(design)}
 
     def save(self, question: Section) -> Answer:
         """A design as the text of its file."""
@@ -93,7 +100,8 @@ class Answers:
     def run(self, name: str, question: Section) -> Callable[[Path], Answer]:
         """What runs.RUNS is asked, with all that it needs, but for its folder. Raises InputError, and KeyError."""
         design, known = _design(question), self._moments(question)
-        turning(design)
+        if name != "fit":  # which may find a seat with which it turns
+            turning(design)
         options: Mapping[str, Callable[[], Answer]] = {
             "simulate": lambda: {"legs": _legs(question)},
             "ride": lambda: {

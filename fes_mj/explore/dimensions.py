@@ -1,6 +1,7 @@
 """A design as the page holds it, the content of a design file; and its sliders, from the table of variables."""
 
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -9,8 +10,8 @@ from fes_mj.common.reading import Section
 from fes_mj.common.text import printable
 from fes_mj.common.units import RPM
 from fes_mj.linkage.design import Design, Linkage
-from fes_mj.linkage.design_file import design_toml, read_design
-from fes_mj.linkage.variables import COMPONENTS, VARIABLES, Component, component, crank_speed
+from fes_mj.linkage.design_file import DESIGNS, design_toml, load_design, read_design
+from fes_mj.linkage.variables import COMPONENTS, SIX_BAR, VARIABLES, Component, component, crank_speed
 
 # Unit of files -> unit of the page, how many of it, how far a slider goes to either side, its step (page's unit).
 _SCALES: dict[str, tuple[str, float, float, float]] = {
@@ -39,6 +40,20 @@ def design_of(content: Any) -> Design:
     design = read_design(Section(Path(name), "", tables), name)
     crank_speed(design)
     return design
+
+
+def of_kind(design: Design, kind: str) -> Design:
+    """The design as another kind of linkage: what both kinds have stays, and the crank's place; the rest is a paper's.
+
+    The paper's is its first design of that kind.
+    """
+    linkage = next(paper.linkage for paper in map(load_design, DESIGNS) if paper.linkage.kind == kind)
+    both = {design.linkage.kind, kind}
+    kept = [v.attribute for v in VARIABLES.values() if v.owner == "linkage" and both <= {*v.kinds}]
+    if both <= {*SIX_BAR}:
+        kept.append("branch")
+    linkage = replace(linkage, **{attribute: getattr(design.linkage, attribute) for attribute in kept})
+    return replace(design, linkage=replace(linkage, ground=design.linkage.crank_centre - linkage.pivot_to_crank))
 
 
 def dimensions() -> list[dict[str, Any]]:

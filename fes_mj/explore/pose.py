@@ -51,23 +51,31 @@ def _apart(
     return np.where(open_there, tips[0], joint), np.where(open_there, tips[1], joint)
 
 
-def failing_angle(design: Design) -> float | None:
-    """Crank angle at which a linkage first lacks most to turn, rad; None if it closes all round."""
-    lacking = (clearance for clearance in clearances(design) if not clearance.margin[0] >= LEAST_CLEARANCE)
-    return next((float(clearance.crank_angle[0]) for clearance in lacking), None)
+def failing(design: Design) -> dict[str, Any] | None:
+    """At which crank angle, deg, a linkage first lacks most to turn, and a sentence; None if it closes all round."""
+    for links, (margin,), _, (angle,) in clearances(design):
+        if not margin >= LEAST_CLEARANCE:
+            degrees, pair = float(np.degrees(angle)), " and ".join(links)
+            text = f"{pair} cannot close at crank angle {degrees:.1f} deg: {-100 * margin:.2f} cm are missing"
+            if margin >= 0:
+                text = (
+                    f"{pair} come within {100 * margin:.3f} cm of their dead centre at crank angle {degrees:.1f} deg; "
+                    f"{100 * LEAST_CLEARANCE:g} cm are needed"
+                )
+            return {"deg": degrees, "text": text}
+    return None
 
 
 def as_json(design: Design, crank_angle: FloatArray) -> dict[str, Any]:
-    """Bodies over the turn and what is drawn of them, m; where a linkage that does not turn fails, deg."""
-    bodies, failing = ends(design, crank_angle), failing_angle(design)
+    """Bodies over the turn and what is drawn of them, m."""
+    bodies = ends(design, crank_angle)
     return {
-        "bodies": {body: [_plane(end) for end in pair] for body, pair in bodies.items()},
-        "pedal": _plane(bodies["shank"][1]),
+        "bodies": {body: [plane(end) for end in pair] for body, pair in bodies.items()},
+        "pedal": plane(bodies["shank"][1]),
         "pedal_on": design.linkage.architecture.pedal_body,
         "bars": [bar_json(bar) for bar in back_to_front(design)],
         "pins": [pin(joint, bodies) for joint in design.linkage.architecture.joints],
         "dyads": [pair for pair in DYADS if pair[0] in bodies],
-        "failing_deg": None if failing is None else float(np.degrees(failing)),
     }
 
 
@@ -84,6 +92,6 @@ def pin(joint: str, bodies: Ends) -> dict[str, Any]:
     return {"body": body, "end": end, "radius": part.size, "colour": hex_colour(part.colour)}
 
 
-def _plane(points: ComplexArray) -> list[FloatArray]:
+def plane(points: ComplexArray) -> list[FloatArray]:
     """X and y to a tenth of a millimetre."""
     return [np.round(part, 4) for part in (points.real, points.imag)]

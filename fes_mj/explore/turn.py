@@ -1,6 +1,7 @@
 """What a design does in a turn, as the page shows it: motion, curves and numbers, or why there are none."""
 
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -10,19 +11,22 @@ from fes_mj.common.text import typeset
 from fes_mj.common.units import RPM
 from fes_mj.explore import pose
 from fes_mj.explore.limits import broken
+from fes_mj.linkage import kinematics
 from fes_mj.linkage.assembly import grashof_margin
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.joints import JOINTS
+from fes_mj.linkage.kinematics import Motion
 from fes_mj.linkage.legs import all_legs
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.uncertainty import instant_power_weights, with_sd
 from fes_mj.statics.characteristics import motion_characteristics, power_characteristics
-from fes_mj.statics.equilibrium import crank_moment
+from fes_mj.statics.equilibrium import crank_moment, virtual_work
 from fes_mj.statics.extrapolation import beyond
 from fes_mj.statics.joint_forces import JointForces, peaks
-from fes_mj.statics.turn import QuasiStatic, quasi_static
+from fes_mj.statics.turn import TURN_POINTS, QuasiStatic, quasi_static
 
-POINTS = 360  # crank angles of a turn, from 0
+POINTS = 360  # crank angles of a turn, from 0, at which curves are sent
+STEP = TURN_POINTS // POINTS
 DIGITS = 3  # after the point, of curves in W and deg
 _ANGLES = np.linspace(0, 2 * np.pi, POINTS, endpoint=False)
 
@@ -32,21 +36,30 @@ def turn(design: Design, moments: Mapping[str, JointMoments], legs: int = 1) -> 
 
     Without power, because the linkage does not turn or a joint never enters the moments' range, "why" says so.
     """
-    answer = pose.as_json(design, _ANGLES) | {"cadence_rpm": design.linkage.cadence / RPM}
+    failing = pose.failing(design)
+    answer = pose.as_json(design, _ANGLES) | {"cadence_rpm": design.linkage.cadence / RPM, "failing": failing}
     try:
         solved = {name: quasi_static(design, own, points=POINTS) for name, own in moments.items()}
     except InputError as error:
-        return answer | {"why": str(error), "broken": broken(design, None)}
-    first = next(iter(solved.values()))
+        return answer | {"why": failing["text"] if failing else str(error), "broken": broken(design, None)}
+    motion = kinematics.solve(design, np.linspace(0, 2 * np.pi, TURN_POINTS, endpoint=False))
+    fine = {name: _fine(static, motion) for name, static in solved.items()}
+    first = next(iter(fine.values()))
     return answer | {
         "broken": broken(design, first),
         "numbers": _shown(_numbers(first)),
-        "joints": {joint: np.round(np.degrees(angle), DIGITS) for joint, angle in first.joint_angle.items()},
-        "moments": {name: _under(static, legs) for name, static in solved.items()},
+        "joints": {joint: np.round(np.degrees(angle[::STEP]), DIGITS) for joint, angle in first.joint_angle.items()},
+        "moments": {name: _under(static, fine[name], legs) for name, static in solved.items()},
     }
 
 
-def _under(solved: QuasiStatic, legs: int) -> dict[str, Any]:
+def _fine(solved: QuasiStatic, motion: Motion) -> QuasiStatic:
+    """The same at as many angles as `fes_mj static` takes, by virtual work: without reactions."""
+    moment = solved.torque.along(motion, solved.cadence)
+    return replace(solved, motion=motion, joint_moment=moment, crank_moment=virtual_work(motion, moment), reactions={})
+
+
+def _under(solved: QuasiStatic, fine: QuasiStatic, legs: int) -> dict[str, Any]:
     """Curves and numbers that depend on the moments."""
     massive = solved.cadence * crank_moment(solved.motion, solved.torque, solved.cadence)
     covariance, reference = solved.moments.covariance, solved.torque.reference
@@ -59,11 +72,11 @@ def _under(solved: QuasiStatic, legs: int) -> dict[str, Any]:
         "static": np.round(all_legs(solved.power, legs), DIGITS),
         "masses": np.round(all_legs(massive, legs), DIGITS),
         "sd": None if deviation is None else np.round(deviation, DIGITS),
-        "power_mean_W": solved.power_mean,
+        "power_mean_W": fine.power_mean,
         "range_deg": {joint: np.degrees(reference.ranges[joint]) for joint in JOINTS},
         "outside": np.maximum(*outside) > 0,
-        "numbers": _shown(_power_numbers(solved)),
-        "note": solved.extrapolation.verdict,
+        "numbers": _shown(_power_numbers(fine, peaks(JointForces(solved).with_masses))),
+        "note": fine.extrapolation.verdict,
     }
 
 
@@ -89,9 +102,8 @@ def _numbers(solved: QuasiStatic) -> Iterator[Number]:
         yield "grashof", "Grashof margin", f"{100 * float(grashof_margin(design)[0]):.2f}", "cm"
 
 
-def _power_numbers(solved: QuasiStatic) -> Iterator[Number]:
+def _power_numbers(solved: QuasiStatic, forces: Mapping[str, float]) -> Iterator[Number]:
     character = power_characteristics(solved.power)
-    forces = peaks(JointForces(solved).with_masses)
     joint = max(forces, key=lambda name: forces[name])
     yield "power", "mean power, one leg", with_sd(solved.power_mean, solved.power_sd), "W"
     yield "work", "work per turn", f"{solved.work_per_turn:.2f}", "J"

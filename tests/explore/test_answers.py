@@ -53,7 +53,7 @@ def test_own_moments_join_the_groups_of_their_page(answers: Answers) -> None:
 
 @pytest.mark.parametrize("sex", ["male", "female"])
 def test_a_rider_by_percentile(answers: Answers, sex: str) -> None:
-    rider = design_of(answers.rider(question(design=D1, sex=sex, percentile=5))["design"]).rider
+    rider = design_of(answers.change(question(design=D1, sex=sex, percentile=5))["design"]).rider
     people = next(people for people in populations().values() if people.sex == sex)
     assert rider == people.rider(5)
 
@@ -84,7 +84,7 @@ def test_runs_that_mean_nothing(answers: Answers, name: str, change: dict[str, A
 
 def test_runs_need_what_turns(answers: Answers) -> None:
     with pytest.raises(AssemblyError):
-        answers.run("fit", question(design=D1 | {"linkage": D1["linkage"] | {"R2": 0.3}}, moments="p1p2"))
+        answers.run("optimise", question(design=D1 | {"linkage": D1["linkage"] | {"R2": 0.3}}, moments="p1p2"))
 
 
 def test_a_run_is_asked_of_the_page(answers: Answers, tmp_path: Path) -> None:

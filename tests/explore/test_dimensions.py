@@ -1,10 +1,12 @@
 """What the page holds is a design file's content: there and back, with the same refusals."""
 
+from dataclasses import replace
+
 import pytest
 
 import fes_mj
 from fes_mj.common.errors import InputError
-from fes_mj.explore.dimensions import content_of, design_of, dimensions
+from fes_mj.explore.dimensions import content_of, design_of, dimensions, of_kind
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.variables import component
 
@@ -45,6 +47,24 @@ def test_refusals_are_those_of_design_files(change: dict[str, object], message: 
     content["linkage"] |= change
     with pytest.raises(InputError, match=message):
         design_of(content)
+
+
+@pytest.mark.parametrize("kind", ["trt", "crt", "cdt"])
+def test_another_kind_keeps_the_crank_where_it_is(design: Design, kind: str) -> None:
+    other = of_kind(replace(design, linkage=replace(design.linkage, seat_angle=0.3)), kind)
+    assert design_of(content_of(other)) == other  # a design that files may hold
+    assert other.linkage.kind == kind
+    assert (other.linkage.crank, other.linkage.foot) == (design.linkage.crank, design.linkage.foot)
+    assert (other.linkage.seat_angle, other.rider) == (0.3, design.rider)
+    assert other.linkage.crank_centre == pytest.approx(design.linkage.crank_centre, abs=1e-12)
+    if kind == design.linkage.kind:
+        assert other.linkage == replace(design.linkage, seat_angle=0.3)
+
+
+def test_six_bars_keep_their_branch() -> None:
+    right = fes_mj.load_design("d1").with_linkage(branch="right")
+    assert of_kind(right, "crt").linkage.branch == "right"
+    assert of_kind(right, "trt").linkage.branch == "left"  # it has none
 
 
 def test_a_cadence_that_no_command_runs_is_refused() -> None:

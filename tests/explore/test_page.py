@@ -1,169 +1,148 @@
-"""The page in a real browser."""
+"""The page in a real browser: what a designer sees and does."""
 
 import re
-import threading
-import time
-from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any
 
 import pytest
 
 import fes_mj
-from fes_mj.cli.app import run
-from fes_mj.explore.answers import Answers
-from fes_mj.explore.server import Server
-from fes_mj.explore.turn import POINTS
 from fes_mj.linkage.design_file import design_toml
+from fes_mj.linkage.riders import populations
 from fes_mj.linkage.variables import replaced
-from fes_mj.statics.turn import quasi_static
-from tests.browser import DESKTOP, NEEDS_BROWSER, PHONE, browser
+from fes_mj.moments.files import moments_csv
+from tests.browser import LAPTOP, NEEDS_BROWSER, PHONE, SCREENS, browser
 from tests.cli.conftest import answer
+from tests.explore.browsing import Page, page, server
 
-__all__ = ["browser"]  # the fixture
+__all__ = ["browser", "page", "server"]  # fixtures
 
 pytestmark = NEEDS_BROWSER
-PATIENCE = 60_000  # ms
-
-
-class Page:
-    """A page that is open, and everything that went wrong in it."""
-
-    def __init__(self, page: Any, address: str) -> None:
-        self.page, self.wrong = page, []
-        page.set_default_timeout(PATIENCE)
-        page.on("pageerror", lambda error: self.wrong.append(str(error)))
-        page.on("console", lambda message: self.wrong.append(message.text) if message.type == "error" else None)
-        page.goto(address)
-        self.settled(0)
-
-    @property
-    def updates(self) -> int:
-        return int(self.page.evaluate("Number(document.body.dataset.updates || 0)"))
-
-    def settled(self, before: int) -> None:
-        """Wait until the page has shown more answers than before."""
-        self.until(lambda: self.updates > before)
-
-    def until(self, holds: Callable[[], bool]) -> None:
-        """Wait, without a script of ours in the page: its policy allows none."""
-        deadline = time.monotonic() + PATIENCE / 1000
-        while not holds():
-            assert time.monotonic() < deadline
-            self.page.wait_for_timeout(20)
-
-    def set(self, name: str, value: float) -> None:
-        before = self.updates
-        self.page.fill(f"#number-{name}", str(value))
-        self.page.press(f"#number-{name}", "Enter")
-        self.settled(before)
-
-    def number(self, name: str) -> str:
-        return str(self.page.inner_text(f"#numbers tr[data-name={name}] td:nth-child(2)"))
-
-    @property
-    def power(self) -> float:
-        return float(self.number("power").split()[0])
-
-    def save(self, folder: Path) -> Path:
-        with self.page.expect_download() as download:
-            self.page.click("#save")
-        path = folder / download.value.suggested_filename
-        download.value.save_as(path)
-        return path
-
-    def choose(self, select: str, value: str) -> None:
-        before = self.updates
-        self.page.select_option(select, value)
-        self.settled(before)
-
-
-@pytest.fixture(params=[DESKTOP], ids=["desktop"])
-def page(browser: Any, answers: Answers, request: pytest.FixtureRequest) -> Iterator[Page]:
-    width, height = request.param
-    server = Server(answers, "127.0.0.1", 0)
-    thread = threading.Thread(target=server.run)
-    thread.start()
-    opened = browser.new_page(viewport={"width": width, "height": height})
-    page = Page(opened, server.address)
-    yield page
-    opened.close()
-    server.should_exit = True
-    thread.join()
-    assert page.wrong == []
 
 
 def test_a_slider_moves_and_the_power_is_that_of_the_saved_file(
     page: Page, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    first, before = page.number("power"), page.updates
-    slider = page.page.locator(".dimension[data-name=R2] input[type=range]")
+    first, slider = page.number("power"), page.page.locator(".dimension[data-name=R2] input[type=range]")
     slider.focus()
-    for _ in range(3):
-        slider.press("ArrowLeft")
-    page.settled(before)
-    page.until(page.page.locator("#undo").is_enabled)
-    page.page.wait_for_timeout(500)  # answers under way
+    page.after(lambda: [slider.press("ArrowLeft") for _ in range(3)])
+    page.page.wait_for_timeout(800)  # answers under way, and a rest in which it becomes an entry of the history
     saved = page.save(tmp_path)
     assert saved.name == "d1-edited.toml"
-    design, moments = fes_mj.load_design(saved), fes_mj.load_moments()
-    assert 0.14 < design.linkage.crank < fes_mj.load_design("d1").linkage.crank
-    static = quasi_static(design, moments, points=POINTS)
-    assert page.number("power") == f"{static.power_mean:.2f} ± {static.power_sd:.2f}"
+    assert 0.14 < fes_mj.load_design(saved).linkage.crank < fes_mj.load_design("d1").linkage.crank
     code, result = answer(capsys, "static", str(saved))
     assert code == 0
-    # shown with two digits, of a tenth of the angles (test_turn)
-    assert page.power == pytest.approx(result["power_mean_W"], abs=0.005 + 2e-4 * result["power_mean_W"])
-    before = page.updates
-    page.page.click("#reset")
-    page.settled(before)
+    power = page.number("power")
+    assert power == f"{result['power_mean_W']:.2f} ± {result['power_sd_W']:.2f}"
+    page.after(lambda: page.page.click("#reset"))
     assert page.number("power") == first
-    before = page.updates
-    page.page.click("#undo")  # of the reset
-    page.settled(before)
-    assert page.power == pytest.approx(static.power_mean, abs=0.005)
+    page.after(lambda: page.page.click("#undo"))  # of the reset
+    assert page.number("power") == power
 
 
-def test_an_impossible_linkage_is_drawn_open_and_blocks_nothing(page: Page) -> None:
+def test_an_impossible_linkage_is_drawn_open_and_marks_what_must_change(page: Page) -> None:
     first = page.number("power")
     page.set("R2", 25)
-    assert "rocker and coupler cannot close at crank angle 166.8 deg" in page.page.inner_text("#error")
+    lacking = fes_mj.load_design("d1").linkage
+    missing = 100 * (0.25 + abs(lacking.pivot_to_crank) - lacking.rocker - lacking.coupler)
+    text = page.page.inner_text("#error")
+    assert text == f"Rocker and coupler cannot close at crank angle 166.8 deg: {missing:.2f} cm are missing"
+    error, plot = (page.page.locator(selector).bounding_box() for selector in ("#error", "#power-plot"))
+    assert error["y"] + error["height"] <= plot["y"]  # it covers nothing
+    marked = page.page.locator(".dimension.outside")
+    assert [row.get_attribute("data-name") for row in marked.all()] == ["R2"]
+    assert page.page.inner_text("#broken") == ""
     assert page.page.input_value("#angle") == "167"
-    gap = page.page.locator("#scene .gap:visible").bounding_box()
-    assert gap["width"] > 10  # pixels; 80.68 mm lack
+    assert page.page.locator("#scene .gap:visible").bounding_box()["width"] > 10  # pixels
     assert page.page.inner_text("#power") == "no power"
-    before = page.updates
-    page.page.click("#undo")
-    page.settled(before)
+    page.after(lambda: page.page.click("#undo"))
     assert page.number("power") == first
     assert page.page.is_hidden("#error")
-    assert page.page.locator("#scene .gap:visible").count() == 0
+    assert page.page.locator("#scene .gap:visible").count() == marked.count() == 0
+
+
+def test_a_number_outside_its_range_is_refused_not_replaced(page: Page) -> None:
+    first, field = page.number("power"), page.page.locator("#number-R2")
+    for typed in ("900", "-3", ""):
+        page.type("R2", typed)
+        field.press("Enter")
+        assert page.page.inner_text(".dimension[data-name=R2] .refusal") == "must be 0.1 to 200 cm"
+        assert (field.input_value(), field.get_attribute("aria-invalid")) == (typed, "true")
+    assert page.number("power") == first
+    page.set("R2", 15)
+    assert page.page.locator(".refusal").count() == 0
+    assert page.number("power") != first
+
+
+def test_kind_branch_and_rider(page: Page, tmp_path: Path) -> None:
+    page.choose("#kind", "crt")
+    assert page.page.locator(".dimension[data-name=gamma]").count() == 0
+    page.choose("#branch", "right")
+    page.page.select_option("#sex", "female")
+    page.page.fill("#percentile", "5")
+    page.after(lambda: page.page.click("#take-rider"))
+    made, d1 = fes_mj.load_design(page.save(tmp_path)), fes_mj.load_design("d1")
+    assert (made.linkage.kind, made.linkage.branch) == ("crt", "right")
+    assert made.linkage.crank_centre == pytest.approx(d1.linkage.crank_centre, abs=1e-12)
+    assert (made.linkage.rocker, made.linkage.seat_angle) == (d1.linkage.rocker, d1.linkage.seat_angle)
+    assert made.rider == populations()["woman"].rider(5)
+    page.choose("#kind", "trt")
+    assert page.page.is_hidden("#branch")
+    assert page.page.locator("#scene .space").count() == 0  # which bounds six-bars
+
+
+def test_a_link_a_reload_and_the_way_back(page: Page, tmp_path: Path) -> None:
+    page.set("R2", 15.5)
+    page.choose("#moments", "p1p3")
+    page.page.wait_for_timeout(800)
+    sent, saved = page.page.url, page.save(tmp_path).read_text()
+    power = page.number("power")
+    page.after(page.page.go_back)
+    assert page.page.input_value("#number-R2") == "16.08"
+    page.after(page.page.go_forward)
+    assert page.number("power") == power
+    page.page.reload()
+    page.settled(0)
+    assert page.number("power") == power
+    page.after(lambda: page.page.click("#undo"))  # as before the reload
+    assert page.page.input_value("#number-R2") == "16.08"
+    page.open(sent)
+    assert page.save(tmp_path).read_text() == saved
+    assert (page.number("power"), page.page.input_value("#moments")) == (power, "p1p3")
+    for nonsense in ("#{", "#%7B%22design%22:3%7D", "#%ff"):
+        page.open(sent.partition("#")[0] + nonsense)
+        assert page.page.inner_text("#message").startswith("The address holds no design")
+        assert page.page.input_value("#design") == "d1"
+    page.saw("400")
 
 
 def test_load_files(page: Page, tmp_path: Path) -> None:
     own = tmp_path / "mine.toml"
     own.write_text(design_toml(replaced(fes_mj.load_design("r1"), {"R6": 0.1})))
-    before = page.updates
-    page.page.set_input_files("#open-file", own)
-    page.settled(before)
-    static = quasi_static(fes_mj.load_design(own), fes_mj.load_moments(), points=POINTS)
-    assert page.power == pytest.approx(static.power_mean, abs=0.005)
+    page.after(lambda: page.page.set_input_files("#open-file", own))
+    static = fes_mj.quasi_static(fes_mj.load_design(own), fes_mj.load_moments())
+    assert page.number("power") == f"{static.power_mean:.2f} ± {static.power_sd:.2f}"
     assert page.page.input_value("#design") == "mine"
-    assert page.page.locator(".dimension[data-name=gamma]").count() == 0  # no CDT
     bad = tmp_path / "bad.toml"
     bad.write_text("[linkage]\nkind = 'crt'\n")
     page.page.set_input_files("#open-file", bad)
     page.page.wait_for_selector("#message:visible")
     assert page.page.inner_text("#message").startswith("bad.toml: linkage.R1 is missing")
-    page.wrong.clear()  # the browser itself logs a refused question
-    moments = tmp_path / "own.csv"
-    moments.write_text("crank_angle_deg,knee_Nm,hip_Nm\n0,1,2\n90,20,-3\n200,-5,4\n")
-    before = page.updates
-    page.page.set_input_files("#moments-file", moments)
-    page.settled(before)
-    static = quasi_static(fes_mj.load_design(own), fes_mj.load_moments(moments), points=POINTS)
+    page.saw("400")  # the browser itself logs a refused question
+
+
+def test_a_measurement_file_comes_with_what_it_names_and_opens_nothing_else(page: Page, tmp_path: Path) -> None:
+    trial, data = tmp_path / "trial.toml", tmp_path / "data.csv"
+    trial.write_text('[moments]\nfile = "data.csv"\nextension = {knee = "negative"}\n')
+    data.write_text(moments_csv(fes_mj.load_moments("p1p3")))
+    page.after(lambda: page.page.set_input_files("#moments-file", [trial, data]))
+    assert page.page.input_value("#moments") == "trial"
+    static = fes_mj.quasi_static(fes_mj.load_design("d1"), fes_mj.load_moments(trial))
     assert page.number("power") == f"{static.power_mean:.2f}".replace("-", "−")  # noqa: RUF001
-    assert run(["static", str(own), "--moments", str(moments), "-q"]) == 0
+    trial.write_text(f'[moments]\nfile = "{data}"\n')
+    page.page.set_input_files("#moments-file", trial)
+    page.page.wait_for_selector("#message:visible")
+    assert page.page.inner_text("#message").startswith("trial.toml: it names 'data.csv'; choose that file too")
+    page.saw("400")
 
 
 def test_limits_can_be_switched_off(page: Page) -> None:
@@ -171,18 +150,53 @@ def test_limits_can_be_switched_off(page: Page) -> None:
     outside = page.page.locator("#numbers tr.outside")
     assert [row.split("\t")[0] for row in outside.all_inner_texts()] == ["Grashof margin"]
     assert "the Grashof margin is 0.06 cm" in page.page.inner_text("#broken")
+    assert page.page.locator("#scene .space").count() == 1
     page.page.click("#limits")
-    assert outside.count() == 0
+    assert outside.count() == page.page.locator("#scene .space").count() == 0
     assert page.page.inner_text("#broken") == ""
 
 
-def test_simulate_shows_its_verdict_while_sliders_move(page: Page) -> None:
-    page.page.click("text=Simulate in MuJoCo")
+@pytest.mark.parametrize("page", [LAPTOP], indirect=True, ids=["laptop"])
+def test_verdicts_appear_in_sight(page: Page) -> None:
+    page.page.click("text=Simulate")
+    page.page.wait_for_selector("#verdict .good")
+    assert page.page.inner_text("#verdict p").startswith("Dynamic and static agree: mean power 31.14 W")
+    box = page.page.locator("#verdict").bounding_box()
+    assert box["y"] + box["height"] <= LAPTOP[1]
+    page.page.click("#verdict summary")
+    assert page.page.locator("#verdict td.good").count() == page.page.locator("#verdict tbody tr").count()
+    page.page.click("text=Simulate")
     page.set("R6", 11)
-    page.page.wait_for_selector("#verdict table")
+    page.page.wait_for_selector("#verdict details")
+    assert page.page.inner_text("#verdict p").startswith("Of the design as it was: Dynamic and static agree")
+
+
+def test_a_seat_is_fitted_and_taken(page: Page, tmp_path: Path) -> None:
+    page.page.fill("#percentile", "5")
+    page.after(lambda: page.page.click("#take-rider"))
+    page.page.click("text=Fit the seat")
+    page.page.wait_for_selector("#verdict button")
     verdict = page.page.inner_text("#verdict p")
-    assert verdict.startswith("Of the design as it was: Dynamic and static agree: mean power 31.")
-    assert page.page.locator("#verdict td.good").count() == page.page.locator("#verdict table tr").count() - 1
+    page.after(lambda: page.page.click("text=Use this design"))
+    design, moments = fes_mj.load_design("d1"), fes_mj.load_moments()
+    best = fes_mj.fit_seat(design, populations()["man"].rider(5), moments)
+    assert best.static
+    assert verdict.startswith("Best seat: ")
+    assert f"{best.static.power_mean:.2f} W" in verdict
+    assert page.number("power").split()[0] == f"{best.static.power_mean:.2f}"
+    seated = fes_mj.load_design(page.save(tmp_path)).linkage
+    assert seated.ground == pytest.approx(best.design.linkage.ground, abs=1e-9)
+    assert page.page.inner_text("#verdict p").startswith("Best seat: ")  # still
+
+
+def test_a_search_tells_how_far_it_is_and_can_be_cancelled(page: Page) -> None:
+    page.page.click("text=Optimise from here")
+    page.until(lambda: re.search(r"3\d\.\d\d W so far; 0 of 4 searches", page.page.inner_text("#verdict")) is not None)
+    page.set("R6", 11)  # meanwhile
+    page.page.click("#cancel")
+    page.page.wait_for_selector("#verdict .bad")
+    assert page.page.inner_text("#verdict p") == "Cancelled."
+    assert page.page.locator("[data-run]:enabled").count() == 4
 
 
 def test_the_model_is_downloaded(page: Page) -> None:
@@ -222,3 +236,65 @@ def test_on_a_phone_motion_and_power_stay_in_sight(page: Page) -> None:
     assert re.fullmatch(r"31\.\d\d ± 0\.\d\d W", page.page.inner_text("#power"))
     page.set("R10", 20)
     assert page.page.inner_text("#against").startswith("d1 as loaded: 31.")
+
+
+# Contrast as WCAG 2 defines it, of every text that is shown against the first background behind it.
+FAINT_TEXTS = """() => {
+    const parts = (colour) => colour.match(/[\\d.]+/g).map(Number);
+    const light = ([r, g, b]) => [r, g, b].map((v) => v / 255)
+        .map((v) => (v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4))
+        .reduce((sum, v, n) => sum + v * [0.2126, 0.7152, 0.0722][n], 0);
+    const behind = (node) => {
+        for (; node; node = node.parentElement) {
+            const [r, g, b, a = 1] = parts(getComputedStyle(node).backgroundColor);
+            if (a > 0) return [r, g, b];
+        }
+        return [255, 255, 255];
+    };
+    const faint = [];
+    for (const node of document.querySelectorAll("body *")) {
+        const own = [...node.childNodes].some((child) => child.nodeType === 3 && child.textContent.trim());
+        if (!(own || node.matches("input[type=number], select"))) continue;
+        if (!node.getClientRects().length || node.disabled) continue;
+        const style = getComputedStyle(node);
+        const [one, other] = [light(parts(node.closest("svg") ? style.fill : style.color)), light(behind(node))];
+        const contrast = (Math.max(one, other) + 0.05) / (Math.min(one, other) + 0.05);
+        if (contrast < 4.5) faint.push(`${node.textContent.trim()} ${contrast.toFixed(2)}`);
+    }
+    return faint;
+}"""
+NAMELESS = """() => {
+    const labels = (node) => [...(node.labels ?? [])].map((label) => label.textContent).join("");
+    const content = (node) => (node.matches("button, summary") ? node.textContent : "");
+    return [...document.querySelectorAll("button, input, select, svg[role], summary")]
+        .filter((node) => node.getClientRects().length)
+        .filter((node) => !((node.getAttribute("aria-label") ?? "") + labels(node) + content(node)).trim())
+        .map((node) => node.outerHTML);
+}"""
+
+
+@pytest.mark.parametrize("page", SCREENS, indirect=True)
+def test_everything_has_a_name_and_can_be_read(page: Page) -> None:
+    page.page.click("text=Simulate")
+    page.page.wait_for_selector("#verdict details")
+    page.page.click("#verdict summary")
+    for design, crank in (("r2", 15), ("d1", 25)):  # outside a limit; one that does not turn
+        page.choose("#design", design)
+        page.set("R2", crank)
+        page.type("R6", 900)
+        page.page.press("#number-R6", "Enter")
+        assert page.page.evaluate(FAINT_TEXTS) == []
+        assert page.page.evaluate(NAMELESS) == []
+    assert page.page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+
+
+def test_by_keyboard_alone(page: Page) -> None:
+    """Every control is reached by the tabulator key, and seen when it is."""
+    controls = "main :is(button, input, select):not(:disabled)"
+    count = page.page.locator(controls).evaluate_all("nodes => nodes.filter(n => n.getClientRects().length).length")
+    reached = set()
+    for _ in range(count):
+        page.page.keyboard.press("Tab")
+        reached.add(page.page.evaluate("[...document.querySelectorAll('*')].indexOf(document.activeElement)"))
+        assert page.page.evaluate("document.activeElement.matches(':focus-visible')")
+    assert len(reached) == count

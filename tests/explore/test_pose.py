@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import fes_mj
-from fes_mj.explore.pose import as_json, ends, failing_angle
+from fes_mj.explore.pose import as_json, ends, failing
 from fes_mj.linkage.assembly import DYADS, clearances
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.kinematics import positions
@@ -42,18 +42,29 @@ def test_a_linkage_that_turns_is_where_the_kinematics_say(design: Design) -> Non
     for first, second in DYADS:
         if first in bodies:
             np.testing.assert_array_equal(bodies[first][1], bodies[second][0])
-    assert failing_angle(design) is None
+    assert failing(design) is None
 
 
 def test_an_impossible_linkage_is_open_by_what_its_links_lack(impossible: Design) -> None:
     lengths(impossible)
-    failing = failing_angle(impossible)
-    assert failing is not None
-    bodies = ends(impossible, np.array([failing]))
+    angle = failing(impossible)
+    assert angle
+    bodies = ends(impossible, np.radians([angle["deg"]]))
     worst = next(clearance for clearance in clearances(impossible) if clearance.margin[0] < 0)
     first, second = worst.links
     gap = abs(complex(bodies[first][1][0] - bodies[second][0][0]))
     assert gap == pytest.approx(-float(worst.margin[0]), abs=1e-9)
+    assert angle["text"].startswith(f"{first} and {second} cannot close at crank angle {angle['deg']:.1f} deg")
+    assert angle["text"].endswith(f"{100 * gap:.2f} cm are missing")
+
+
+def test_too_near_a_dead_centre() -> None:
+    linkage = fes_mj.load_design("d1").linkage
+    longest = linkage.rocker + linkage.coupler - abs(linkage.pivot_to_crank)  # of cranks that turn
+    near = failing(replaced(fes_mj.load_design("d1"), {"R2": longest - 5e-5}))
+    assert near
+    assert near["text"].startswith("rocker and coupler come within 0.005 cm of their dead centre")
+    assert near["text"].endswith("0.01 cm are needed")
 
 
 def test_what_is_drawn_belongs_to_bodies_that_are_there(design: Design) -> None:

@@ -4,19 +4,27 @@ import { ANGLES, Scene } from "./scene.js";
 import { Plot, legend } from "./plot.js";
 import { Runs } from "./runs.js";
 import { ask, download } from "./server.js";
-import { Sliders } from "./sliders.js";
+import { Sliders, edited, within } from "./sliders.js";
 
 const $ = (id) => document.getElementById(id);
 const copy = (value) => JSON.parse(JSON.stringify(value));
 const AS_LOADED = "as loaded";
 const DASH = "5 4";
+const REST = 400; // ms without a change after which the design is an entry of the browser's history
 
-const start = await ask("start");
+function tell(text) {
+  $("message").textContent = text;
+  $("message").hidden = !text;
+}
+
+const start = await ask("start").catch((error) => {
+  tell(error.message);
+  throw error;
+});
 const state = {
   design: null, // as a design file says it, and its name
   loaded: null, // the same as it came
-  committed: null, // before the change that is under way
-  history: [],
+  touched: null, // the dimension that was changed last
   moments: start.chosen,
   hidden: new Set(),
   angle: 0,
@@ -24,51 +32,94 @@ const state = {
   turn: null,
   reference: null,
 };
-const scene = new Scene($("scene"));
+const scene = new Scene($("scene"), start.space);
 const powerPlot = new Plot($("power-plot"), (angle) => hold(angle));
 const jointsPlot = new Plot($("joints-plot"), (angle) => hold(angle));
-const sliders = new Sliders($("dimensions"), start.dimensions, (dragging) => { if (!dragging) commit(); refresh(dragging); });
-const runs = new Runs($("runs"), $("verdict"), () => ({ design: state.design, moments: state.moments, legs: legs() }), () => snapshot());
+const sliders = new Sliders(document.querySelectorAll("[data-owner]"), start.dimensions, changed);
+const runs = new Runs($("runs"), $("verdict"), asRun, snapshot, take);
 
-// ---- The design in hand
+// ---- The design in hand. What it was stands in the browser's history, and in the address so that it can be sent.
 
 const legs = () => Number($("legs").value);
+const asked = () => ({ design: state.design, legs: legs(), moments: state.moments });
+const address = () => `#${encodeURIComponent(JSON.stringify(asked()))}`;
 
-function load(design) {
-  if (state.design) remember();
-  const before = state.committed;
-  state.loaded = copy(design);
-  state.design = copy(design);
-  state.committed = snapshot();
-  if (before && before !== state.committed) state.history.push(before);
+function snapshot() {
+  return JSON.stringify([state.design, state.loaded]);
+}
+
+function asRun() {
+  if (!within($("slope"), "%")) return null;
+  return { ...asked(), slope: $("slope").valueAsNumber, transmission: $("transmission").value };
+}
+
+let resting;
+function changed(name, dragging) {
+  state.touched = name;
+  tell("");
+  clearTimeout(resting);
+  if (!dragging) resting = setTimeout(commit, REST);
+  $("undo").disabled = false;
+  refresh(dragging);
+}
+
+// Make the design in hand an entry of the history, unless it is that already.
+function commit() {
+  clearTimeout(resting);
+  const entry = { design: state.design, loaded: state.loaded, place: (history.state?.place ?? -1) + 1 };
+  if (JSON.stringify([history.state?.design, history.state?.loaded]) !== snapshot()) history.pushState(entry, "", address());
+  $("undo").disabled = !history.state.place;
+}
+
+// Take another design into the hand, `loaded` if it comes from a file or a list.
+function take(design, loaded = state.loaded) {
+  tell("");
+  commit();
+  Object.assign(state, { design: copy(design), loaded: copy(loaded), touched: null });
+  commit();
   showDesign();
 }
 
-const snapshot = () => JSON.stringify([state.design, state.loaded]);
+const load = (design) => take(design, design);
 
-function remember() {
-  if (snapshot() === state.committed) return;
-  state.history.push(state.committed);
-  state.committed = snapshot();
-}
-
-function commit() {
-  remember();
-  $("undo").disabled = !state.history.length;
+async function change(question) {
+  const { design } = await ask("change", { design: state.design, ...question });
+  take({ ...design, name: edited(design.name) });
 }
 
 function showDesign() {
+  const { kind, branch } = state.design.linkage;
   sliders.show(state.design);
-  $("undo").disabled = !state.history.length;
+  $("undo").disabled = !history.state.place;
   $("design").value = state.loaded.name;
+  $("kind").value = kind;
+  $("branch").value = branch ?? "left";
+  $("of-branch").hidden = kind === "trt";
+  $("sex").value = state.design.rider.sex;
   refresh();
 }
 
 function undo() {
-  commit(); // a number that is being typed
-  if (!state.history.length) return;
-  state.committed = state.history.pop();
-  [state.design, state.loaded] = JSON.parse(state.committed);
+  commit(); // what is being changed
+  if (history.state.place) history.back();
+}
+
+// What the address says, or what was here before a reload; the server makes it whole, or refuses it.
+async function arrive() {
+  try {
+    const sent = location.hash ? JSON.parse(decodeURIComponent(location.hash.slice(1))) : {};
+    const { design } = await ask("change", { design: sent.design ?? start.designs[start.design] });
+    if (start.moments.includes(sent.moments)) state.moments = sent.moments;
+    if (sent.legs === 2) $("legs").value = "2";
+    Object.assign(state, { design, loaded: history.state?.loaded ?? copy(design), touched: null });
+  } catch (error) {
+    state.design = copy((state.loaded = start.designs[start.design]));
+    tell(`The address holds no design: ${error.message}`);
+  }
+  const { design, loaded } = state;
+  history.replaceState({ design, loaded, place: history.state?.place ?? 0 }, "", address());
+  options($("moments"), start.moments, state.moments);
+  showDesigns();
   showDesign();
 }
 
@@ -80,17 +131,17 @@ let busy = false, again = null;
 async function refresh(dragging = false) {
   if (busy) { again = { dragging }; return; }
   busy = true;
-  const asked = snapshot(), question = { design: copy(state.design), legs: legs() };
+  const before = snapshot(), question = copy(asked());
   try {
     await compare(question.legs);
     state.turn = { legs: question.legs, ...(await ask("turn", question)) };
-    tell("");
+    if (!dragging) history.replaceState(history.state, "", address());
     show(dragging);
   } catch (error) {
     tell(error.message);
   }
   busy = false;
-  if (asked !== runs.of) runs.forget();
+  if (before !== runs.of) runs.forget();
   const next = again;
   again = null;
   if (next) refresh(next.dragging);
@@ -106,23 +157,33 @@ async function compare(legs) {
 
 function show(dragging) {
   const { turn } = state;
-  const failing = turn.failing_deg !== null;
-  scene.show(turn, turn.legs, dragging);
+  const failing = turn.failing !== null;
+  scene.show(turn, turn.legs, dragging, $("limits").checked && state.design.linkage.kind !== "trt");
+  if (turn.moments && !turn.moments[state.moments]) forgotten();
   $("error").hidden = !turn.why;
-  $("error").textContent = turn.why || "";
+  $("error").textContent = turn.why ?? "";
   if (failing && !state.failing) {
     state.resume = state.playing;
     play(false);
   } else if (!failing && state.failing && state.resume) play(true);
   state.failing = failing;
-  if (failing && !state.playing) state.angle = Math.round(turn.failing_deg) % ANGLES;
+  if (failing && !state.playing) state.angle = Math.round(turn.failing.deg) % ANGLES;
   showNumbers();
   redraw();
 }
 
+// The server keeps a file of moments for some hours after its last use.
+function forgotten() {
+  tell(`${state.moments} is no longer known; open its file again`);
+  start.moments = Object.keys(state.turn.moments);
+  state.moments = start.moments[0];
+  options($("moments"), start.moments, state.moments);
+}
+
 function showNumbers() {
   const { turn, reference } = state, own = turn.moments?.[state.moments], other = reference.turn.moments?.[state.moments];
-  const broken = $("limits").checked ? turn.broken : [], marks = new Set(broken.flatMap((each) => each.marks));
+  const broken = $("limits").checked && !turn.failing ? turn.broken : [];
+  const marks = new Set(turn.failing ? [state.touched] : broken.flatMap((limit) => limit.marks));
   $("title").textContent = state.design.name;
   $("numbers").replaceChildren(...[...(own?.numbers ?? []), ...(turn.numbers ?? [])].map(({ name, words, text, unit }) => {
     const row = document.createElement("tr");
@@ -158,7 +219,7 @@ function showPlots() {
     }
   });
   const other = reference.turn.moments?.[state.moments];
-  if (other) curves.unshift({ name: reference.name, y: other.masses, colour: start.colours.reference, width: 1.2 });
+  if (other) curves.unshift({ name: reference.name, y: other.masses, colour: start.colours.comparison, width: 1.2 });
   const visible = curves.filter((curve) => !state.hidden.has(curve.name));
   powerPlot.show({ curves: visible, bands, levels: [{ y: 0, colour: "none" }], shaded: turn.moments?.[state.moments]?.outside ?? [] });
   entries.power = legend($("power-legend"), curves, "W", state.hidden, redraw);
@@ -167,7 +228,7 @@ function showPlots() {
   const joints = Object.entries(turn.joints ?? {}).map(([name, y]) => ({ name, y, colour: start.colours[name], width: 2 }));
   const levels = range ? joints.flatMap(({ name, colour }) => range[name].map((y) => ({ y, colour, dash: "2 3" }))) : [];
   jointsPlot.show({ curves: joints.filter((curve) => !state.hidden.has(curve.name)), levels });
-  entries.joints = legend($("joints-legend"), joints, "°", state.hidden, redraw, range ? [{ name: "range of the moments", dash: "2 3", colour: start.colours.reference, width: 1.2 }] : []);
+  entries.joints = legend($("joints-legend"), joints, "°", state.hidden, redraw, range ? [{ name: "range of the moments", dash: "2 3", colour: "currentColor", width: 1.2 }] : []);
   $("of-legs").textContent = turn.legs === 2 ? "(both legs; band: one standard deviation)" : "(one leg; band: one standard deviation)";
 }
 
@@ -211,12 +272,8 @@ function frame(now) {
 
 // ---- Files and runs
 
-function tell(text) {
-  $("message").textContent = text;
-  $("message").hidden = !text;
-}
-
 const attempt = (action) => async (...event) => {
+  tell("");
   try {
     await action(...event);
   } catch (error) {
@@ -258,10 +315,15 @@ async function openMoments(...files) {
 $("play").addEventListener("click", () => play(!state.playing));
 $("angle").addEventListener("input", (event) => hold(Number(event.target.value)));
 $("legs").addEventListener("change", () => refresh());
-$("limits").addEventListener("change", showNumbers);
+$("limits").addEventListener("change", () => show(false));
 $("compared").addEventListener("change", () => refresh());
 $("design").addEventListener("change", (event) => load(start.designs[event.target.value]));
-$("moments").addEventListener("change", (event) => { state.moments = event.target.value; runs.forget(); showNumbers(); redraw(); });
+$("moments").addEventListener("change", (event) => { state.moments = event.target.value; runs.forget(); refresh(); });
+$("kind").addEventListener("change", attempt((event) => change({ kind: event.target.value })));
+$("branch").addEventListener("change", attempt((event) => change({ branch: event.target.value })));
+$("take-rider").addEventListener("click", attempt(async () => {
+  if (within($("percentile"))) await change({ percentile: $("percentile").valueAsNumber, sex: $("sex").value });
+}));
 $("undo").addEventListener("click", undo);
 $("reset").addEventListener("click", () => load(state.loaded));
 $("save").addEventListener("click", attempt(async () => download(await ask("save", { design: state.design }))));
@@ -281,8 +343,12 @@ document.addEventListener("keydown", (event) => {
   }
 });
 
-options($("moments"), start.moments, start.chosen);
-showDesigns();
+addEventListener("popstate", ({ state: entry }) => {
+  if (!entry) return arrive(); // an address that was typed
+  Object.assign(state, { design: copy(entry.design), loaded: copy(entry.loaded), touched: null });
+  showDesign();
+});
+
 play(state.playing);
-load(start.designs[start.design]);
+await arrive();
 requestAnimationFrame(frame);

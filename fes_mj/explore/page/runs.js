@@ -1,50 +1,69 @@
-// A run of the real thing, and its verdict, kept until the design is another.
+// A run, its progress and its verdict, kept until the design is another.
 
 import { ask } from "./server.js";
 
 export class Runs {
-  // question: what a run is asked. snapshot: the design as it is now, as a text.
-  constructor(bar, box, question, snapshot) {
-    this.buttons = [...bar.querySelectorAll("button")];
-    this.box = box;
-    this.question = question;
-    this.snapshot = snapshot;
+  // question: what a run is asked. snapshot: the design as it is now, as a text. onDesign: takes the one that a run made.
+  constructor(bar, box, question, snapshot, onDesign) {
+    this.buttons = [...bar.querySelectorAll("[data-run]")];
+    this.cancel = bar.querySelector("#cancel");
+    Object.assign(this, { box, question, snapshot, onDesign });
     this.of = null; // the snapshot that was run
     for (const button of this.buttons) button.addEventListener("click", () => this.run(button));
+    this.cancel.addEventListener("click", () => this.stop.abort());
   }
 
   forget() {
-    if (!this.box.dataset.running) this.box.replaceChildren();
+    if (this.cancel.hidden) this.box.replaceChildren();
   }
 
   async run(button) {
-    const { box, buttons } = this, line = document.createElement("p"), question = this.question();
+    const { box } = this, line = document.createElement("p"), question = this.question();
+    if (!question) return;
+    const say = (text) => (line.textContent = `${button.textContent}, ${question.design.name}: ${text}`);
     this.of = this.snapshot();
-    buttons.forEach((each) => (each.disabled = true));
-    line.textContent = `${button.textContent}: ${question.design.name} is running…`;
-    box.dataset.running = true;
+    this.stop = new AbortController();
+    this.running(true);
+    say("running…");
     box.replaceChildren(line);
     try {
-      const answer = await ask(button.dataset.run, question);
+      const answer = await ask(button.dataset.run, question, { onProgress: say, signal: this.stop.signal });
       line.className = answer.ok ? "good" : "bad";
       line.textContent = `${this.of === this.snapshot() ? "" : "Of the design as it was: "}${answer.verdict}`;
-      box.append(table(answer.checks));
+      if (answer.design) line.append(" ", this.offer(answer.design));
+      if (answer.checks) box.append(table(answer.checks));
     } catch (error) {
       line.className = "bad";
       line.textContent = error.message;
     }
-    delete box.dataset.running;
-    buttons.forEach((each) => (each.disabled = false));
+    this.running(false);
+  }
+
+  running(on) {
+    for (const button of this.buttons) button.disabled = on;
+    this.cancel.hidden = !on;
+  }
+
+  offer(design) {
+    const button = Object.assign(document.createElement("button"), { type: "button", textContent: "Use this design" });
+    button.addEventListener("click", () => {
+      button.remove();
+      this.onDesign(design);
+      this.of = this.snapshot();
+    });
+    return button;
   }
 }
 
 function table(checks) {
-  const made = document.createElement("table"), head = made.createTHead().insertRow();
-  for (const text of ["check", "value", "limit", ""]) head.append(Object.assign(document.createElement("th"), { textContent: text }));
+  const node = document.createElement("table"), head = node.createTHead().insertRow(), body = node.createTBody();
+  for (const text of ["check", "value", "limit", ""]) head.append(Object.assign(document.createElement("th"), { textContent: text, scope: "col" }));
   for (const { name, value, limit, ok } of checks) {
-    const row = made.insertRow();
+    const row = body.insertRow();
     for (const text of [name, value, limit, ok ? "ok" : "FAILED"]) row.insertCell().textContent = text;
     row.lastChild.className = ok ? "good" : "bad";
   }
-  return made;
+  const details = document.createElement("details");
+  details.append(Object.assign(document.createElement("summary"), { textContent: `${checks.length} checks` }), node);
+  return details;
 }

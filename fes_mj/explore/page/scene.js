@@ -6,18 +6,22 @@ export const ANGLES = 360;
 const MARGIN = 0.16; // m around the joints, for flesh and boot
 
 export class Scene {
-  constructor(svg) {
+  // space: where the pivots may lie, x and y of its corners.
+  constructor(svg, space) {
     this.svg = svg;
+    this.space = space;
     this.plane = element("g", { transform: "scale(-1,-1)" });
     svg.append(this.plane);
   }
 
-  // turn: the answer's bodies, bars, pins, dyads, pedal. hold: keep the frame while a dimension is dragged.
-  show(turn, legs, hold) {
+  // turn: the answer's bodies, bars, pins, dyads, pedal. hold: keep the frame while a dimension is dragged. bounded:
+  // draw the design space.
+  show(turn, legs, hold, bounded) {
     this.turn = turn;
+    this.bounded = bounded;
     this.legs = [];
     const fixed = turn.bars.filter((bar) => bar.body === "").map((bar) => drawn(bar));
-    const nodes = [...fixed];
+    const nodes = [...(bounded ? [closed("space", this.space)] : []), ...fixed];
     for (let leg = legs - 1; leg >= 0; leg--) {
       const parts = turn.bars.filter((bar) => bar.body !== "").map((bar) => ({ body: bar.body, node: drawn(bar) }));
       const pins = turn.pins.map((pin) => ({ ...pin, node: element("circle", { r: pin.radius, fill: pin.colour }) }));
@@ -26,7 +30,7 @@ export class Scene {
       nodes.push(element("g", { class: leg ? "far" : "near" }, ...all));
       this.legs.push({ lag: (leg * ANGLES) / 2, parts, pins, gaps });
     }
-    if (turn.failing_deg === null) nodes.push(...this.paths());
+    if (turn.failing === null) nodes.push(...this.paths());
     nodes.push(this.arrow());
     this.plane.replaceChildren(...nodes);
     if (!hold || !this.framed) this.frame();
@@ -40,8 +44,7 @@ export class Scene {
       const [[x0, y0], [x1, y1]] = bodies.coupler;
       curves.push({ name: "coupler", xy: [x0.map((x, n) => (x + x1[n]) / 2), y0.map((y, n) => (y + y1[n]) / 2)] });
     }
-    return curves.map(({ name, xy: [xs, ys] }) =>
-      element("path", { class: `path ${name}`, d: `M${xs.map((x, n) => `${x},${ys[n]}`).join("L")}Z` }));
+    return curves.map(({ name, xy }) => closed(`path ${name}`, xy));
   }
 
   // Which way the crank turns: counter-clockwise with x backwards, so that the pedal at the top moves forwards.
@@ -55,7 +58,7 @@ export class Scene {
   }
 
   frame() {
-    const xs = [], ys = [];
+    const [xs, ys] = this.bounded ? this.space.map((values) => [...values]) : [[], []];
     for (const [from, to] of Object.values(this.turn.bodies)) {
       xs.push(...from[0], ...to[0]);
       ys.push(...from[1], ...to[1]);
@@ -94,6 +97,10 @@ export class Scene {
       }
     }
   }
+}
+
+function closed(name, [xs, ys]) {
+  return element("path", { class: name, d: `M${xs.map((x, n) => `${x},${ys[n]}`).join("L")}Z` });
 }
 
 function drawn(bar) {

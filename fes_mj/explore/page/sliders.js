@@ -11,50 +11,61 @@ function write(design, { owner, symbol, part, factor }, shown) {
   const value = Number((shown / factor).toPrecision(12));
   if (part === null) design[owner][symbol] = value;
   else design[owner][symbol][part] = value;
-  design.name = design.name.replace(/-edited$/, "") + "-edited";
+  design.name = edited(design.name);
+}
+
+export const edited = (name) => name.replace(/-edited$/, "") + "-edited";
+
+// Whether a field holds a number within its bounds; if not, a line below it says what they are.
+export function within(field, unit = "") {
+  const bad = !field.validity.valid || field.value === "";
+  field.setAttribute("aria-invalid", bad);
+  field.nextElementSibling?.matches(".refusal") && field.nextElementSibling.remove();
+  if (bad) {
+    const line = Object.assign(document.createElement("span"), { className: "refusal", role: "alert" });
+    line.textContent = `must be ${+Number(field.min).toPrecision(4)} to ${+Number(field.max).toPrecision(4)} ${unit}`.replaceAll("-", "−");
+    field.after(line);
+  }
+  return !bad;
 }
 
 export class Sliders {
-  // onChange: called when a dimension was changed, with whether its slider is still being moved.
-  constructor(box, dimensions, onChange) {
-    this.box = box;
+  // boxes: by the table of design files; onChange: told the dimension that was changed, and whether its slider is still moved.
+  constructor(boxes, dimensions, onChange) {
+    this.boxes = boxes;
     this.dimensions = dimensions;
     this.onChange = onChange;
     this.rows = new Map(); // by the dimension's name
   }
 
   show(design) {
-    const known = this.dimensions.filter((each) => each.kinds.includes(design.linkage.kind));
-    this.rows = new Map(known.map((each) => [each.name, row(each, design, this.onChange)]));
-    const group = (words, owner) => {
-      const heading = document.createElement("h2");
-      heading.textContent = words;
-      return [heading, ...known.filter((each) => each.owner === owner).map((each) => this.rows.get(each.name))];
-    };
-    this.box.replaceChildren(...group("Linkage and seat", "linkage"), ...group("Rider", "rider"));
+    const known = this.dimensions.filter(({ kinds }) => kinds.includes(design.linkage.kind));
+    this.rows = new Map(known.map((dimension) => [dimension.name, row(dimension, design, this.onChange)]));
+    for (const box of this.boxes) {
+      box.replaceChildren(...known.filter(({ owner }) => owner === box.dataset.owner).map(({ name }) => this.rows.get(name)));
+    }
   }
 
-  // marks: names of the dimensions that are outside a limit.
+  // marks: names of the dimensions that are outside a limit, or keep the linkage from turning.
   mark(marks) {
-    for (const [name, made] of this.rows) made.classList.toggle("outside", marks.has(name));
+    for (const [name, node] of this.rows) node.classList.toggle("outside", marks.has(name));
   }
 }
 
 function row(dimension, design, onChange) {
   const { name, words, unit, low, high, step } = dimension;
-  const made = document.createElement("div"), label = document.createElement("label"), symbol = document.createElement("b");
+  const node = document.createElement("div"), label = document.createElement("label"), symbol = document.createElement("b");
   const slider = document.createElement("input"), number = document.createElement("input"), units = document.createElement("span");
-  made.className = "dimension";
-  made.dataset.name = name;
+  node.className = "dimension";
+  node.dataset.name = name;
   symbol.textContent = dimension.owner === "rider" || name.length > 3 ? "" : `${name} `;
   label.append(symbol, words);
   label.htmlFor = `number-${name}`;
   Object.assign(slider, { type: "range", step: "any" });
-  slider.setAttribute("aria-label", `${name} ${words}`);
-  Object.assign(number, { type: "number", id: label.htmlFor, min: low, max: high, step });
-  number.title = `${+low.toPrecision(4)} to ${+high.toPrecision(4)} ${unit}`;
+  slider.setAttribute("aria-label", `${name} ${words}, ${unit}`);
+  Object.assign(number, { type: "number", id: label.htmlFor, min: low, max: high, step: "any" });
   units.textContent = unit;
-  made.append(label, slider, number, units);
+  node.append(label, slider, number, units);
 
   const show = () => {
     const value = read(design, dimension);
@@ -64,20 +75,22 @@ function row(dimension, design, onChange) {
     }
     slider.value = value;
     number.value = value.toFixed(DIGITS[unit]);
+    within(number, unit);
   };
   slider.addEventListener("input", () => {
     write(design, dimension, Math.round(Number(slider.value) / step) * step);
     number.value = read(design, dimension).toFixed(DIGITS[unit]);
-    onChange(true);
+    within(number, unit);
+    onChange(name, true);
   });
-  slider.addEventListener("change", () => onChange(false));
+  slider.addEventListener("change", () => onChange(name, false));
   number.addEventListener("change", () => {
-    const asked = number.valueAsNumber;
-    if (Number.isFinite(asked)) write(design, dimension, Math.min(high, Math.max(low, asked)));
+    if (!within(number, unit)) return;
+    write(design, dimension, number.valueAsNumber);
     show();
-    onChange(false);
+    onChange(name, false);
   });
   Object.assign(slider, { min: 0, max: -1 }); // no value is in it
   show();
-  return made;
+  return node;
 }
