@@ -27,18 +27,20 @@ def ramp() -> float:
 
 def drawn(count: int, random: np.random.Generator) -> dict[str, FloatArray]:
     """So many riders of every quantity, shape (count,), independent of each other."""
-    return {name: _column(row, count, random) for name, row in priors().items()}
+    return {name: quantile(name, random.standard_normal(count)) for name in priors()}
 
 
-def _column(row: dict[str, Any], count: int, random: np.random.Generator) -> FloatArray:
+def quantile(name: str, scores: FloatArray) -> FloatArray:
+    """Values of a quantity that lie in its prior where these scores lie in a standard normal distribution."""
+    from scipy.special import ndtr, ndtri
+
+    row, part = priors()[name], ndtr(scores)
     if "either" in row:
-        return np.asarray(random.choice(row["either"], count))
+        return np.asarray(np.where(part < 0.5, *row["either"]))
     if "normal" in row:
-        from scipy.special import ndtr, ndtri
-
         mean, deviation = row["normal"]
-        return np.asarray(mean + deviation * ndtri(random.uniform(ndtr(-mean / deviation), 1, count)))
-    logarithmic = "log-even" in row
-    low, high = np.log(row["log-even"]) if logarithmic else row["even"]
-    values = random.uniform(float(low), float(high), count)
-    return np.exp(values) if logarithmic else values
+        negative = ndtr(-mean / deviation)
+        return np.asarray(mean + deviation * ndtri(negative + (1 - negative) * part))
+    low, high = np.log(row["log-even"]) if "log-even" in row else row["even"]
+    values = low + (high - low) * part
+    return np.asarray(np.exp(values) if "log-even" in row else values)

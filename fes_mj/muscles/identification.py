@@ -1,0 +1,185 @@
+"""What a measurement says of a rider's muscles: riders of the prior, weighed by how well they explain it.
+
+Muscles, passive moments and residual explain measured numbers that are linear in the joint moments. Given all else
+these are linear in the groups' strengths as well, which are drawn from their Gaussian given all else; what is left is
+weighed by the marginal likelihood. Riders are proposed where earlier ones weighed most (adaptive importance sampling:
+Cappe et al., J. Comput. Graph. Stat. 13 (2004) 907-929).
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from fes_mj.common.arrays import FloatArray, IntArray
+from fes_mj.linkage import kinematics
+from fes_mj.linkage.joints import PerJoint
+from fes_mj.moments.fourier import HARMONICS
+from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE, ReferenceTricycle
+from fes_mj.moments.uncertainty import power_weights
+from fes_mj.muscles.anatomy import GROUPS
+from fes_mj.muscles.geometry import Flexion
+from fes_mj.muscles.passive import passive_moments
+from fes_mj.muscles.prior import priors, quantile, ramp
+from fes_mj.muscles.pull import pull
+from fes_mj.muscles.residual import Residual
+from fes_mj.muscles.riders import Riders
+from fes_mj.muscles.timing import Windows, responded
+
+WHOLE = -1  # in place of a group: the whole moment, with passive part and residual
+_STRENGTHS = [f"{group}_strength" for group in GROUPS]
+_POINTS = 120  # crank angles: against three times as many a power changes by 1e-3 of itself, a tenth of its error
+_TURN = np.arange(_POINTS) * (2 * np.pi / _POINTS)  # from the most bent knee
+_BLOCK = 200  # riders at once
+_STAGES = 5
+_LEAST_EFFECTIVE = 100  # riders by whose spread the next ones are proposed
+_FROM_PRIOR = 0.1  # share of the proposals, so that no weight is large where nobody looked
+
+
+class Measured(NamedTuple):
+    """Numbers that are linear in the Fourier coefficients of knee and hip moment, and the tricycle they belong to.
+
+    weights: shape (rows, 98). group: number of the group whose moments alone a row is of, or WHOLE, shape (rows,).
+    values: shape (rows,), and covariance of their errors, shape (rows, rows).
+    """
+
+    weights: FloatArray
+    group: IntArray
+    values: FloatArray
+    covariance: FloatArray
+    reference: ReferenceTricycle = PAPER_TRICYCLE
+
+    @property
+    def residual(self) -> Residual:
+        """The residual as the rows see it: loss of shape (rows,), covariance (rows, rows)."""
+        motion = kinematics.solve(self.reference.design)
+        residual = Residual.on(power_weights(motion, self.reference.cadence, self.reference))
+        rows = self.weights * (self.group == WHOLE)[:, None]
+        return Residual(rows @ residual.loss, rows @ residual.covariance @ rows.T)
+
+
+def coefficients(moment: PerJoint[FloatArray]) -> FloatArray:
+    """Fourier coefficients (moments.fourier) of moments over uniform angles, knee's then hip's: shape (..., 98)."""
+
+    def of_joint(curve: FloatArray) -> FloatArray:
+        spectrum = np.fft.rfft(curve)[..., : HARMONICS + 1] * (2 / curve.shape[-1])
+        return np.concatenate([spectrum.real[..., :1] / 2, spectrum.real[..., 1:], -spectrum.imag[..., 1:]], axis=-1)
+
+    return np.concatenate([*moment.map(of_joint)], axis=-1)
+
+
+@dataclass(frozen=True, eq=False)
+class Candidates:
+    """Riders and what a measurement of each would give.
+
+    by_strength: values per strength of each group, shape (riders, rows, groups). explained: values by passive moments,
+    where they count, and loss, shape (riders, rows). covariance: of the values about these, (riders, rows, rows).
+    """
+
+    riders: Riders
+    by_strength: FloatArray
+    explained: FloatArray
+    covariance: FloatArray
+
+    @classmethod
+    def of(cls, riders: Riders, measured: Measured) -> "Candidates":
+        """These riders, on the tricycle of the measurement."""
+        values = riders.values
+        blocks = (riders.taken(slice(start, start + _BLOCK)) for start in range(0, len(riders), _BLOCK))
+        by_strength, passive = (np.concatenate(c) for c in zip(*(_seen(b, measured) for b in blocks), strict=True))
+        explained = values["passive_included"][:, None] * passive
+        residual = measured.residual
+        explained += values["residual_loss_W"][:, None] * residual.loss
+        variance = values["residual_sd_Nm"][:, None, None] ** 2
+        return cls(riders, by_strength, explained, variance * residual.covariance + measured.covariance)
+
+    def simulated(self, row: int, random: np.random.Generator) -> FloatArray:
+        """What a measurement of one of the riders gives, with a residual and errors of its own, shape (rows,)."""
+        strength = np.array([self.riders.values[name][row] for name in _STRENGTHS])
+        scatter = np.linalg.cholesky(self.covariance[row]) @ random.standard_normal(self.explained.shape[1])
+        return np.asarray(self.by_strength[row] @ strength + self.explained[row] + scatter)
+
+    def posterior(self, values: FloatArray, scores: FloatArray) -> tuple[Riders, FloatArray]:
+        """The riders with strengths drawn given the measured values, and the logarithm of their likelihood without.
+
+        scores: standard normal numbers for the strengths, shape (riders, groups). A negative strength is impossible.
+        """
+        mean, deviation = np.array([priors()[name]["normal"] for name in _STRENGTHS]).T
+        spread = self.by_strength * deviation
+        total = self.covariance + spread @ np.swapaxes(spread, 1, 2)
+        apart = values - self.explained - self.by_strength @ mean
+        gain = np.swapaxes(np.linalg.solve(total, spread * deviation), 1, 2)
+        left = np.diag(deviation**2) - gain @ (spread * deviation)
+        change = np.einsum("ngr,nr->ng", gain, apart)
+        change += np.einsum("ngh,nh->ng", np.linalg.cholesky((left + np.swapaxes(left, 1, 2)) / 2), scores)
+        strengths = mean + change
+        fits = apart - np.einsum("nrg,ng->nr", self.by_strength, change)
+        joint = _log_density(fits, self.covariance) - np.sum((change / deviation) ** 2, axis=1) / 2
+        known = dict(self.riders.values) | dict(zip(_STRENGTHS, strengths.T, strict=True))
+        marginal = np.where((strengths > 0).all(axis=1), _log_density(apart, total), -np.inf)
+        return Riders("posterior", known, joint), marginal
+
+
+def _seen(riders: Riders, measured: Measured) -> tuple[FloatArray, FloatArray]:
+    """Candidates.by_strength of riders, and values by passive moments, shape (riders, rows)."""
+    unit = Riders(
+        riders.name, dict(riders.values) | {name: np.ones(len(riders)) for name in _STRENGTHS}, riders.likelihood
+    )
+    reference, weights = measured.reference, measured.weights
+    cadence = np.full((1, 1), reference.cadence)
+    motion = kinematics.solve(reference.design, _TURN + reference.top_dead_centre)
+    on, width = np.moveaxis(riders.windows(), -1, 0)[..., None]
+    stimulation = Windows(on, width).at(_TURN - cadence * riders["delay_s"], cadence * ramp())
+    activation = responded(stimulation, riders, cadence)
+    moment = pull(unit, motion, reference.cadence).moment.map(lambda moment: (activation * moment)[:, :, 0])
+    by_group = np.einsum("rf,gmf->mrg", weights, coefficients(moment))
+    counts = (measured.group[:, None] == WHOLE) | (measured.group[:, None] == np.arange(len(GROUPS)))
+    passive = passive_moments(Flexion.along(motion, np.radians(riders["hip_offset_deg"])))
+    return by_group * counts, coefficients(passive)[:, 0] @ weights.T * (measured.group == WHOLE)
+
+
+def _log_density(apart: FloatArray, covariance: FloatArray) -> FloatArray:
+    """Of Gaussian numbers this far from their means, shape (riders, rows), up to a constant."""
+    solved = np.linalg.solve(covariance, apart[..., None])[..., 0]
+    return np.asarray(-(np.sum(apart * solved, axis=-1) + np.linalg.slogdet(covariance)[1]) / 2)
+
+
+class Posterior(NamedTuple):
+    """Weighed riders; weights: shape (riders,)."""
+
+    riders: Riders
+    weights: FloatArray
+
+    @property
+    def effective(self) -> float:
+        """How many independent riders the weighed ones are worth."""
+        return float(self.weights.sum() ** 2 / np.sum(self.weights**2))
+
+    def members(self, count: int) -> Riders:
+        """So many riders, each as likely as any other: at even steps of the weights' sum."""
+        steps = (np.arange(count) + 0.5) / count
+        return self.riders.taken(np.searchsorted(np.cumsum(self.weights) / self.weights.sum(), steps))
+
+
+def identify(measured: Measured, random: np.random.Generator, count: int) -> Posterior:
+    """What is known of a rider after a measurement: so many candidates at each of a few stages, the last weighed."""
+    quantities = [name for name in priors() if name not in _STRENGTHS]
+    centre, spread = np.zeros(len(quantities)), np.eye(len(quantities))
+    for stage in range(_STAGES):
+        own = random.standard_normal((count, len(quantities)))
+        there = centre + own @ np.linalg.cholesky(spread).T
+        scores = np.where(random.random((count, 1)) < _FROM_PRIOR, own, there) if stage else own
+        values = {name: quantile(name, column) for name, column in zip(quantities, scores.T, strict=True)}
+        unit = {name: np.ones(count) for name in _STRENGTHS}
+        candidates = Candidates.of(Riders("candidates", unit | values, np.zeros(count)), measured)
+        riders, likelihood = candidates.posterior(measured.values, random.standard_normal((count, len(GROUPS))))
+        # a proposal's density per that of the prior
+        ratio = np.exp(_log_density(scores - centre, spread) + np.sum(scores**2, axis=1) / 2)
+        log_weight = likelihood - np.log(_FROM_PRIOR + (1 - _FROM_PRIOR) * ratio)
+        log_weight -= log_weight.max()
+        power = 1.0
+        while (posterior := Posterior(riders, np.exp(power * log_weight))).effective < _LEAST_EFFECTIVE:
+            power *= 0.8  # flatter weights, until enough riders say where to look
+        centre = np.average(scores, axis=0, weights=posterior.weights)
+        spread = np.cov(scores.T, aweights=posterior.weights)
+    return Posterior(riders, np.exp(log_weight))
