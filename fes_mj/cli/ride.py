@@ -138,7 +138,7 @@ def _texts(case: fes_mj.RideCase, starts: Starts | None, result: str) -> list[st
 def _print(case: fes_mj.RideCase, starts: Starts | None) -> None:
     ride, run = case.ride, case.simulation.trace
     road = f"{ride.transmission}{' gear' if ride.fixed else ''}, {100 * ride.road.slope:g} % slope"
-    title = f"{what_moves(ride.design, ride.moments)}; {road}"
+    title = f"{what_moves(ride.design, ride.moments.driver)}; {road}"
     print_table(title, ("", "MuJoCo", "reduced model"), beside(_rows(run), _rows(case.reference)))
     print_checks("Checks", case.checks)
     if starts:

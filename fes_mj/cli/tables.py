@@ -11,26 +11,23 @@ from fes_mj.common.checks import Check
 from fes_mj.common.console import conclude, number, print_table, say, verdict
 from fes_mj.common.units import RPM
 from fes_mj.linkage.design import Design
-from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.statics.friction import BearingLoss
 from fes_mj.statics.joint_forces import NET_FORCE, JointForces, KneeLoad, peaks
-from fes_mj.statics.turn import QuasiStatic
+from fes_mj.statics.turn import DrivenTurn, QuasiStatic
 
 
-def heading(result: QuasiStatic, legs: int = 1) -> str:
-    """Which design, whose moments, how fast."""
+def heading(result: DrivenTurn, legs: int = 1) -> str:
+    """Which design, what drives it, how fast."""
     which = "one leg" if legs == 1 else "two legs, values of one"
-    return f"{what_moves(result.design, result.moments)}; {result.cadence / RPM:.1f} rpm; {which}"
+    return f"{what_moves(result.design, result.driver)}; {result.cadence / RPM:.1f} rpm; {which}"
 
 
-def what_moves(design: Design, moments: JointMoments) -> str:
-    """Which design, whose moments."""
-    relation = moments.torque_velocity
-    faster = f" with the torque-velocity relation of {relation.name.title()}" if relation else ""
-    return f"{design.name}, {design.linkage.architecture.title}; {moments.name}{faster}"
+def what_moves(design: Design, driver: str) -> str:
+    """Which design, what drives it."""
+    return f"{design.name}, {design.linkage.architecture.title}; {driver}"
 
 
-def power_rows(result: QuasiStatic) -> list[tuple[str, str]]:
+def power_rows(result: DrivenTurn) -> list[tuple[str, str]]:
     """Quantity and quasi-static value, as text."""
     return [
         ("mean crank power, W", with_error(result.power_mean, result.power_sd)),
@@ -105,11 +102,11 @@ def print_budget(*legs: QuasiStatic) -> None:
         say(f"error budget of the mean power: {budget.brief}")
 
 
-def print_notes(result: QuasiStatic, of: str = "") -> None:
+def print_notes(result: DrivenTurn, of: str = "") -> None:
     """Print what a reader must know of a result, if anything; of: which one, where there are several."""
     for note in result.notes:
         say(f"note: {of}{note}")
-    if result.extrapolation.verdict:
+    if isinstance(result, QuasiStatic) and result.extrapolation.verdict:
         conclude(False, f"{of}EXTRAPOLATED", f": {result.extrapolation.verdict}.")
 
 

@@ -109,7 +109,7 @@ class Pipeline(Setup):
         turning_in_range(self.design, torque.reference)
         motion = self.motion(np.linspace(0, 2 * np.pi, points, endpoint=False))
         joint_moment = self.joint_moment(motion, leg)
-        return QuasiStatic(motion, torque, self.cadence, joint_moment, *self.equilibrium(motion, joint_moment))
+        return QuasiStatic(motion, self.cadence, joint_moment, *self.equilibrium(motion, joint_moment), torque)
 
     @cached_property
     def friction(self) -> BearingLoss | None:

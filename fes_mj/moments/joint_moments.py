@@ -59,6 +59,12 @@ class JointMoments(Brief):
     def brief(self) -> str:
         return f"{self.name}: {len(self.knee)} samples of a turn"
 
+    @property
+    def driver(self) -> str:
+        """What moves the legs, in a few words."""
+        relation = self.torque_velocity
+        return f"{self.name} with the torque-velocity relation of {relation.name.title()}" if relation else self.name
+
     @cached_property
     def coefficients(self) -> PerJoint[FloatArray]:
         """Of the Fourier series of each moment's smooth curve through the samples (fourier.fit), N m, shape (49,)."""

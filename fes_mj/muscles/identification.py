@@ -33,6 +33,7 @@ _TURN = np.arange(_POINTS) * (2 * np.pi / _POINTS)  # from the most bent knee
 _BLOCK = 200  # riders at once
 _STAGES = 5
 _LEAST_EFFECTIVE = 100  # riders by whose spread the next ones are proposed
+_DRAWS = 10  # of the strengths of each
 _FROM_PRIOR = 0.1  # share of the proposals, so that no weight is large where nobody looked
 
 
@@ -102,7 +103,8 @@ class Candidates:
     def posterior(self, values: FloatArray, scores: FloatArray) -> tuple[Riders, FloatArray]:
         """The riders with strengths drawn given the measured values, and the logarithm of their likelihood without.
 
-        scores: standard normal numbers for the strengths, shape (riders, groups). A negative strength is impossible.
+        scores: standard normal numbers for the strengths, shape (draws, riders, groups). Negative strengths are
+        impossible: of the draws the first without counts, and the share of these belongs to the likelihood.
         """
         mean, deviation = np.array([priors()[name]["normal"] for name in _STRENGTHS]).T
         spread = self.by_strength * deviation
@@ -110,14 +112,17 @@ class Candidates:
         apart = values - self.explained - self.by_strength @ mean
         gain = np.swapaxes(np.linalg.solve(total, spread * deviation), 1, 2)
         left = np.diag(deviation**2) - gain @ (spread * deviation)
-        change = np.einsum("ngr,nr->ng", gain, apart)
-        change += np.einsum("ngh,nh->ng", np.linalg.cholesky((left + np.swapaxes(left, 1, 2)) / 2), scores)
+        spread_left = np.linalg.cholesky((left + np.swapaxes(left, 1, 2)) / 2)
+        changes = np.einsum("ngr,nr->ng", gain, apart) + np.einsum("ngh,dnh->dng", spread_left, scores)
+        possible = (mean + changes > 0).all(axis=-1)
+        change = changes[possible.argmax(axis=0), np.arange(len(self.riders))]
         strengths = mean + change
         fits = apart - np.einsum("nrg,ng->nr", self.by_strength, change)
         joint = _log_density(fits, self.covariance) - np.sum((change / deviation) ** 2, axis=1) / 2
         known = dict(self.riders.values) | dict(zip(_STRENGTHS, strengths.T, strict=True))
-        marginal = np.where((strengths > 0).all(axis=1), _log_density(apart, total), -np.inf)
-        return Riders("posterior", known, joint), marginal
+        with np.errstate(divide="ignore"):
+            share = np.log(possible.mean(axis=0))
+        return Riders("posterior", known, joint), _log_density(apart, total) + share
 
 
 def _seen(riders: Riders, measured: Measured) -> tuple[FloatArray, FloatArray]:
@@ -172,13 +177,15 @@ def identify(measured: Measured, random: np.random.Generator, count: int) -> Pos
         values = {name: quantile(name, column) for name, column in zip(quantities, scores.T, strict=True)}
         unit = {name: np.ones(count) for name in _STRENGTHS}
         candidates = Candidates.of(Riders("candidates", unit | values, np.zeros(count)), measured)
-        riders, likelihood = candidates.posterior(measured.values, random.standard_normal((count, len(GROUPS))))
+        numbers = random.standard_normal((_DRAWS, count, len(GROUPS)))
+        riders, likelihood = candidates.posterior(measured.values, numbers)
         # a proposal's density per that of the prior
         ratio = np.exp(_log_density(scores - centre, spread) + np.sum(scores**2, axis=1) / 2)
         log_weight = likelihood - np.log(_FROM_PRIOR + (1 - _FROM_PRIOR) * ratio)
         log_weight -= log_weight.max()
         power = 1.0
-        while (posterior := Posterior(riders, np.exp(power * log_weight))).effective < _LEAST_EFFECTIVE:
+        enough = min(_LEAST_EFFECTIVE, np.isfinite(log_weight).sum() / 2)
+        while (posterior := Posterior(riders, np.exp(power * log_weight))).effective < enough:
             power *= 0.8  # flatter weights, until enough riders say where to look
         centre = np.average(scores, axis=0, weights=posterior.weights)
         spread = np.cov(scores.T, aweights=posterior.weights)

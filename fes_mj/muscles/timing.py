@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from fes_mj.common.arrays import FloatArray
+from fes_mj.common.errors import InputError
 from fes_mj.muscles.activation import answer, trapezium
 from fes_mj.muscles.prior import ramp
 from fes_mj.muscles.riders import Riders
@@ -61,7 +62,12 @@ def best_windows(
 
     power: W per activation, shape (groups, members, designs, angles), over ANGLES; cadence: as for `activation`.
     each_its_own: the best ones of every member instead, for one who has been measured completely.
+    Raises InputError for a duty below that of a window of 5 deg, or above 1.
     """
+    if not STEP / 360 <= duty <= 1:
+        raise InputError(
+            f"duty is {duty:g}; it must be from {STEP / 360:.3f}, a window of {STEP} deg, to 1, all the turn"
+        )
     widths = np.arange(STEP, np.floor(360 * duty / STEP + 1e-9) * STEP + 1, STEP)
     answers = activation(Windows(np.zeros((len(widths), 1, 1)), widths[:, None, None]), riders, cadence)
     # harmonics beyond half the number of starts have less than 1e-6 of the power, as both curves are continuous

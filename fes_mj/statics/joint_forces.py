@@ -10,7 +10,7 @@ from fes_mj.common.arrays import ComplexArray
 from fes_mj.linkage.inertia import GRAVITY, body_loads
 from fes_mj.linkage.riders import leg_mass_after_injury
 from fes_mj.statics.equilibrium import equilibrium
-from fes_mj.statics.turn import QuasiStatic
+from fes_mj.statics.turn import DrivenTurn
 
 # Stimulating the quadriceps of paralysed, seated legs: largest load on the distal femur, body weights (PMC3324830).
 STIMULATED_SHEAR, STIMULATED_COMPRESSION = 2.15, 1.39
@@ -32,7 +32,7 @@ class KneeLoad(NamedTuple):
 class JointForces:
     """Joint forces of a turn, as QuasiStatic.reactions: of the moments alone, and with weight and inertia as well."""
 
-    static: QuasiStatic
+    static: DrivenTurn
 
     @cached_property
     def with_masses(self) -> dict[str, ComplexArray]:

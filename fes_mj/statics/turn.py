@@ -30,17 +30,15 @@ TURN_POINTS = 3600
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class QuasiStatic(Brief):
-    """One turn of the massless model; arrays over crank angle, shape (n,).
+class DrivenTurn(Brief):
+    """One turn of the massless model, whatever drives it; arrays over crank angle, shape (n,).
 
-    motion: over uniform crank angles of one turn. torque: the map that gave the moments. cadence: rad/s.
-    joint_moment: N m, extension positive. crank_moment (N m, on the load) and reactions come from free-body
-    equilibrium. A reaction is the complex force in N that the first body named by Architecture.joints exerts on the
-    second, by point name.
+    motion: over uniform crank angles of one turn. cadence: rad/s. joint_moment: N m, extension positive. crank_moment
+    (N m, on the load) and reactions come from free-body equilibrium. A reaction is the complex force in N that the
+    first body named by Architecture.joints exerts on the second, by point name.
     """
 
     motion: Motion
-    torque: TorqueMap
     cadence: float
     joint_moment: PerJoint[FloatArray]
     crank_moment: FloatArray
@@ -48,15 +46,26 @@ class QuasiStatic(Brief):
 
     @property
     def brief(self) -> str:
-        return f"{self.design.name} {self.moments.name}: {self.power_mean:.2f} W at {self.cadence / RPM:.1f} rpm"
+        return f"{self.design.name} {self.driver}: {self.power_mean:.2f} W at {self.cadence / RPM:.1f} rpm"
+
+    @property
+    def driver(self) -> str:
+        """What moves the legs, in a few words."""
+        raise NotImplementedError
+
+    @property
+    def power_sd(self) -> float | None:
+        """Standard deviation of power_mean, W; None where nothing is known of the error."""
+        raise NotImplementedError
+
+    @property
+    def notes(self) -> list[str]:
+        """What a reader must know of the result."""
+        raise NotImplementedError
 
     @property
     def design(self) -> Design:
         return self.motion.design
-
-    @property
-    def moments(self) -> JointMoments:
-        return self.torque.moments
 
     @property
     def crank_angle(self) -> FloatArray:
@@ -83,6 +92,41 @@ class QuasiStatic(Brief):
         """Work of one leg on the crank in one turn, J; without a torque-velocity relation the same at any cadence."""
         return float(2 * np.pi * self.crank_moment.mean())
 
+    @property
+    def joint_range_deg(self) -> PerJoint[list[float]]:
+        """Smallest and largest joint angle, deg."""
+        return self.joint_angle.map(lambda angle: [float(np.degrees(f(angle))) for f in (np.min, np.max)])
+
+    def summary(self) -> dict[str, Any]:
+        """The keys that every turn has, as JSON names and units it."""
+        return {
+            "design": self.design.name,
+            "cadence_rpm": self.cadence / RPM,
+            "power_mean_W": self.power_mean,
+            "work_per_turn_J": self.work_per_turn,
+            "knee_range_deg": self.joint_range_deg.knee,
+            "hip_range_deg": self.joint_range_deg.hip,
+            **power_characteristics(self.power),
+            **motion_characteristics(self.motion),
+            "crank_angle_zero": CRANK_ZERO,
+            "top_dead_centre_deg": float(np.degrees(turning(self.design).top_dead_centre)),
+        }
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class QuasiStatic(DrivenTurn):
+    """A turn that joint moments drive; torque: the map that gave them."""
+
+    torque: TorqueMap
+
+    @property
+    def driver(self) -> str:
+        return self.moments.driver
+
+    @property
+    def moments(self) -> JointMoments:
+        return self.torque.moments
+
     @cached_property
     def power_weights(self) -> FloatArray:
         """Mean power per Fourier coefficient of knee, then hip moment, W/(N m), shape (98,)."""
@@ -102,11 +146,6 @@ class QuasiStatic(Brief):
         return extrapolation(self.motion, self.torque, self.joint_moment, self.cadence)
 
     @property
-    def joint_range_deg(self) -> PerJoint[list[float]]:
-        """Smallest and largest joint angle, deg."""
-        return self.joint_angle.map(lambda angle: [float(np.degrees(f(angle))) for f in (np.min, np.max)])
-
-    @property
     def notes(self) -> list[str]:
         """What a reader must know of the result: joint angles for which the torque map has no data."""
         return [
@@ -120,26 +159,16 @@ class QuasiStatic(Brief):
     def summary(self) -> dict[str, Any]:
         """The keys that every result of a run has, as JSON names and units them."""
         relation = self.moments.torque_velocity
-        return {
-            "design": self.design.name,
+        return super().summary() | {
             "group": self.moments.name,
             "torque_velocity": relation.name if relation else None,
-            "cadence_rpm": self.cadence / RPM,
-            "power_mean_W": self.power_mean,
             "power_sd_W": self.power_sd,
-            "work_per_turn_J": self.work_per_turn,
-            "knee_range_deg": self.joint_range_deg.knee,
-            "hip_range_deg": self.joint_range_deg.hip,
-            **power_characteristics(self.power),
-            **motion_characteristics(self.motion),
             "extrapolation": self.extrapolation.verdict,
             "extrapolated_share": self.extrapolation.share,
             "extrapolated_work_share": self.extrapolation.work_share,
             "extrapolation_sd_W": self.extrapolation.sd,
             "notes": self.notes,
             "warnings": [misreading._asdict() for misreading in self.moments.misreadings],
-            "crank_angle_zero": CRANK_ZERO,
-            "top_dead_centre_deg": float(np.degrees(turning(self.design).top_dead_centre)),
         }
 
 
@@ -159,7 +188,7 @@ def quasi_static(
     motion = kinematics.solve(design, np.linspace(0, 2 * np.pi, points, endpoint=False))
     torque = torque_map(moments)
     joint_moment = torque.along(motion, speed)
-    return QuasiStatic(motion, torque, speed, joint_moment, *equilibrium(motion, joint_moment))
+    return QuasiStatic(motion, speed, joint_moment, *equilibrium(motion, joint_moment), torque)
 
 
 def difference_sd(one: QuasiStatic, other: QuasiStatic, factor: float = 1.0) -> float | None:

@@ -43,7 +43,7 @@ def test_strengths_are_those_of_gaussian_conditioning(riders):
         Riders("many", {k: np.repeat(v, count) for k, v in one.values.items()}, np.zeros(count)),
         *(np.repeat(part, count, axis=0) for part in (seen.by_strength, seen.explained, seen.covariance)),
     )
-    posterior, marginal = many.posterior(values, np.random.default_rng(4).standard_normal((count, 3)))
+    posterior, marginal = many.posterior(values, np.random.default_rng(4).standard_normal((4, count, 3)))
     drawn_strengths = np.stack([posterior.values[name] for name in list(priors())[:3]], axis=1)[np.isfinite(marginal)]
     axes = np.meshgrid(*[np.linspace(0.0, 1.6, 81)] * 3, indexing="ij")
     grid = np.stack([axis.ravel() for axis in axes], axis=1)

@@ -1,0 +1,48 @@
+"""What drives the legs: joint moments that belong to joint angles, or muscles that are stimulated."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+from cyclopts import Group, Parameter
+
+from fes_mj.cli.options import LoadOptions, needs, speed_at
+from fes_mj.common.errors import InputError
+from fes_mj.linkage.design_file import load_design
+from fes_mj.muscles.riders import load_riders
+from fes_mj.muscles.timing import DUTY
+from fes_mj.statics.muscle_static import MuscleStatic
+
+_MUSCLES = Group("Muscles", validator=needs("--drive"))
+
+
+@Parameter(name="*", group=_MUSCLES)
+@dataclass
+class DriveOptions:
+    """What drives the legs.
+
+    Args:
+        drive: Joint moments that belong to joint angles, as in the paper, or stimulated muscles.
+        timing: When muscles are stimulated: best in expectation, as in the measurement, or as the joint angles say;
+            by-angle is the paper's rule, in which the moments of the measurement belong to the joint angles.
+        duty: Largest share of the turn in which a muscle group is stimulated.
+        muscles: An ensemble of riders (.npz) instead of the group's.
+    """
+
+    drive: Literal["moments", "muscles"] = "moments"
+    timing: Literal["best", "measured", "by-angle", "stimulation-by-angle"] = "best"
+    duty: float = DUTY
+    muscles: Path | None = None
+
+    def solve(self, options: LoadOptions, name: str) -> MuscleStatic:
+        """A design driven by muscles. Raises InputError for options that do not go together."""
+        if options.torque_velocity:
+            raise InputError("--torque-velocity is of moments; --drive muscles has the speed dependence of each muscle")
+        if options.moments and not self.muscles:
+            raise InputError(
+                "--moments say nothing of muscles; give the riders that were identified from them with --muscles "
+                "RIDERS.npz, or a --group"
+            )
+        design, riders = load_design(name, options.dims), load_riders(self.muscles or options.group or "p1p2")
+        speed = speed_at(options.cadence, design)
+        return MuscleStatic.solve(design, riders, speed, self.timing, self.duty, options.legs)

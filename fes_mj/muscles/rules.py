@@ -1,0 +1,95 @@
+"""Rules by which riders are stimulated on a design; designs are compared under one of them.
+
+best: windows of a stimulator with the largest expected power (timing). measured: those of the measurement, from the
+most bent knee on. stimulation-by-angle: what was stimulated at a joint's angle and direction in the measurement is
+stimulated there; of the knee for quadriceps and hamstrings, of the hip for the gluteus. by-angle: the paper's, in which
+the moment itself belongs to a joint's angle and direction.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from fes_mj.common.arrays import FloatArray
+from fes_mj.linkage import kinematics
+from fes_mj.linkage.design import Design
+from fes_mj.linkage.joints import PerJoint
+from fes_mj.linkage.kinematics import Motion
+from fes_mj.linkage.turning import turning
+from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE as _TRIAL
+from fes_mj.muscles.activation import trapezium
+from fes_mj.muscles.anatomy import GROUPS, anatomy
+from fes_mj.muscles.by_angle import moments_by_angle
+from fes_mj.muscles.geometry import Flexion
+from fes_mj.muscles.power import MuscleTurn, best_turn, muscle_turn
+from fes_mj.muscles.prior import ramp
+from fes_mj.muscles.pull import pull
+from fes_mj.muscles.riders import Riders
+from fes_mj.muscles.timing import ANGLES, DUTY, Windows, responded
+
+BEST, MEASURED, BY_ANGLE, STIMULATION_BY_ANGLE = RULES = ("best", "measured", "by-angle", "stimulation-by-angle")
+_LEADING = {"quadriceps": "knee", "hamstrings": "knee", "gluteus": "hip"}
+
+
+@dataclass(frozen=True, eq=False)
+class Stimulated:
+    """Riders on one design under a rule.
+
+    motion: over ANGLES. moment: of the muscles, N m, positive in extension, shape (members, angles). turn: what muscles
+    do, and windows: when, (groups, members or 1, 1); None where the rule knows none.
+    """
+
+    riders: Riders
+    motion: Motion
+    cadence: float
+    moment: PerJoint[FloatArray]
+    turn: MuscleTurn | None = None
+    windows: Windows | None = None
+
+    @cached_property
+    def power(self) -> FloatArray:
+        """Crank power of one leg by its joints, W, shape (members, angles)."""
+        rate = self.motion.joint_rate
+        return np.asarray(self.cadence * (self.moment.knee * rate.knee + self.moment.hip * rate.hip))
+
+
+def stimulated(rule: str, riders: Riders, design: Design, cadence: float, duty: float = DUTY) -> Stimulated:
+    """Riders, measured on the paper's tricycle, on a design under one of RULES.
+
+    cadence: rad/s. duty: as for best_windows, of the best rule alone.
+    Raises InputError for joints beyond the range of the muscles' lengths, AssemblyError if the linkage does not turn.
+    """
+    turning(design)
+    motion = kinematics.solve(design, ANGLES)
+    anatomy().require_range(design.name, Flexion.along(motion, np.radians(riders["hip_offset_deg"])))
+    if rule == BY_ANGLE:
+        there = muscle_turn(riders, _TRIAL.design, _TRIAL.cadence, trial_windows(riders, _TRIAL.design))
+        measured = there.moment.map(lambda moment: moment[:, 0])
+        return Stimulated(riders, motion, cadence, moments_by_angle(measured, motion, _TRIAL))
+    windows = None
+    if rule == BEST:
+        turn, windows = best_turn(riders, design, cadence, duty)
+    elif rule == MEASURED:
+        windows = trial_windows(riders, design)
+        turn = muscle_turn(riders, design, cadence, windows)
+    else:
+        stimulation = _by_joint(riders, design, cadence)
+        turn = MuscleTurn(pull(riders, motion, cadence), responded(stimulation, riders, np.full((1, 1), cadence)))
+    return Stimulated(riders, motion, cadence, turn.moment.map(lambda moment: moment[:, 0]), turn, windows)
+
+
+def trial_windows(riders: Riders, design: Design) -> Windows:
+    """The windows of the measurement on a design, counted from its own most bent knee."""
+    on, width = np.moveaxis(riders.windows(), -1, 0)[..., None]
+    return Windows(on, width).shifted(np.degrees(turning(design).top_dead_centre))
+
+
+def _by_joint(riders: Riders, design: Design, cadence: float) -> FloatArray:
+    """Stimulation of each group by the joint that leads it, delayed, shape (groups, members, 1, angles)."""
+    motion = kinematics.solve(design, ANGLES - cadence * riders["delay_s"][:, 0])
+    angle, rate = motion.joint_angle, motion.joint_rate
+    source = PerJoint.of(lambda joint: _TRIAL.source_angle(joint, angle[joint], rate[joint]))
+    on, width = np.radians(np.moveaxis(riders.windows(), -1, 0))[..., None]
+    there = np.stack([source[_LEADING[group]] for group in GROUPS])
+    return trapezium(there - on, width, _TRIAL.cadence * ramp())[:, :, None]

@@ -1,0 +1,62 @@
+"""`--drive muscles`: the promised JSON, and what does not go together."""
+
+import pytest
+
+from fes_mj.muscles.riders import load_riders
+from tests.cli.conftest import answer, result
+
+MUSCLES = ("--drive", "muscles")
+
+
+def test_static_of_muscles_has_the_promised_keys(capsys):
+    code, content = answer(capsys, "static", "d1", *MUSCLES, "--curves")
+    assert code == 0
+    assert (content["drive"], content["timing"], content["group"]) == ("muscles", "best", "p1p2")
+    assert set(content) >= {
+        "power_mean_W", "power_sd_W", "power_mode_W", "muscle_power_W", "power_two_legs_min_W", "negative_share",
+        "activation_rise_s", "activation_fall_s", "delay_s", "hip_flexion_offset_deg", "length_scale", "windows_deg",
+        "ramp_s", "duty", "knee_range_deg", "peak_force_N", "extrapolated_share", "transmission_angle_min_deg",
+    }  # fmt: skip
+    assert set(content["muscles"][0]) == {
+        "name", "group", "strength", "max_isometric_force_N", "optimal_fibre_length_m", "tendon_slack_length_m",
+        "pennation_rad", "max_speed_fibre_lengths_per_s",
+    }  # fmt: skip
+    assert content["crank_angle_deg"] == list(range(360))
+    work = sum(content["crank_moment_Nm"]) / 360 * content["cadence_rpm"] * 3.141592653589793 / 30
+    assert work == pytest.approx(content["power_mean_W"])
+
+
+def test_designs_are_compared_and_text_names_the_windows(capsys):
+    content = answer(capsys, "static", "trt", "d1", *MUSCLES, "--group", "p1p3", "--duty", "0.2")[1]
+    assert [row["design"] for row in content["ratios"]] == ["trt", "d1"]
+    assert content["ratios"][0]["power_ratio"] == 1
+    assert max(content["designs"][1]["duty"].values()) <= 0.2
+    code, out, _ = result(capsys, "static", "trt", *MUSCLES, "--curves", "-v")
+    assert code == 0
+    assert "p1p2 muscles, timing best" in out
+    assert "quadriceps" in out
+    assert result(capsys, "static", "trt", "d1", *MUSCLES)[0] == 0
+
+
+def test_own_riders_are_those_of_the_file(capsys, tmp_path):
+    load_riders("p1p2").taken(slice(0, 5)).save(tmp_path / "mine.npz")
+    content = answer(capsys, "static", "trt", *MUSCLES, "--muscles", str(tmp_path / "mine.npz"))[1]
+    assert content["group"] == "mine"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("--timing", "best"), "--drive"),
+        ((*MUSCLES, "--duty", "0"), "duty is 0"),
+        ((*MUSCLES, "--duty", "1.5"), "duty is 1.5"),
+        ((*MUSCLES, "--torque-velocity", "hill"), "--torque-velocity"),
+        ((*MUSCLES, "--moments", "mine.csv"), "--muscles"),
+        ((*MUSCLES, "--muscles", "nowhere.npz"), "nowhere.npz"),
+    ],
+)
+def test_what_does_not_go_together_is_refused_in_one_line(capsys, arguments, said):
+    code, out, err = result(capsys, "static", "trt", *arguments)
+    assert (code, out) == (2, "")
+    assert said in err
+    assert len(err.strip().splitlines()) == 1
