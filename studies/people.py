@@ -15,7 +15,9 @@ from fes_mj.common.provenance import provenance
 from fes_mj.common.units import turns_per_second
 from fes_mj.common.writing import json_text, write_text
 from fes_mj.fit.population import fit_population
-from fes_mj.fit.seat import Seats, best_seats, fit_seat, seat_text
+from fes_mj.fit.search import best_seats
+from fes_mj.fit.seat import fit_seat, seat_text
+from fes_mj.fit.seats import Seats
 from fes_mj.linkage.design import Design, Rider
 from fes_mj.linkage.design_file import design_toml, load_design
 from fes_mj.linkage.joints import PerJoint
@@ -78,7 +80,7 @@ def problem(target: str, statistic: str) -> Problem:
 def row(made_for: str, design: Design, printed: Design) -> Row:
     """Measure a design."""
     population = fit_population(design, MOMENTS, samples=SAMPLES, seed=SAMPLE_SEED)
-    powers = np.concatenate([np.nan_to_num(rider.fitted) for rider in population.riders.values()])
+    powers = np.concatenate([np.nan_to_num(rider.fitted.power) for rider in population.riders.values()])
     paper = fit_seat(design, Rider(), MOMENTS)
     own = {key: value for key, value in paper.summary().items() if key.startswith("power")}
     content = {
@@ -87,9 +89,7 @@ def row(made_for: str, design: Design, printed: Design) -> Row:
         "power_people_mean_W": float(powers.mean()),
         "power_people_p10_W": float(np.percentile(powers, 10)),
         "can_ride": float(np.mean(powers > 0)),
-        "can_ride_as_drawn": float(
-            np.mean([np.isfinite(rider.unmoved).mean() for rider in population.riders.values()])
-        ),
+        "can_ride_as_drawn": float(np.mean([*population.summary()["share_unmoved"].values()])),
         "power_paper_rider_fitted_W": own["power_mean_W"],
         "power_paper_rider_drawn_W": own["power_unmoved_W"],
         "paper_rider_seat": seat_text(paper.seat),

@@ -27,8 +27,9 @@ from fes_mj.common.console import conclude, print_table, progress_bar, say
 from fes_mj.common.errors import InputError, require_extra
 from fes_mj.common.text import printable
 from fes_mj.common.writing import require_writable, write_text
-from fes_mj.fit.population import STEPS, PopulationFit, fit_population
-from fes_mj.fit.seat import SeatFit, SeatLimits, fit_seat, seat_text
+from fes_mj.fit.population import GRADES, STEPS, PopulationFit, fit_population
+from fes_mj.fit.seat import SeatFit, fit_seat, seat_text
+from fes_mj.fit.seats import SeatLimits
 from fes_mj.linkage.design import Design, Rider
 from fes_mj.linkage.design_file import design_toml, load_design
 from fes_mj.linkage.riders import SAMPLES, populations
@@ -188,6 +189,8 @@ def _print(result: SeatFit) -> None:
     print_table(f"{result.drawn.name}; {result.moments.name}; {legs}", ("", "best seat"), rows)
     if result.static:
         print_notes(result.static)
+        for name in result.ends:
+            say(f"note: the seat is at the end of its range {name} (--{name}): a wider one may suit better")
         conclude(True, "Fits", ".")
     else:
         conclude(False, "Does not fit", f": {result.why}.")
@@ -211,6 +214,8 @@ def _print_population(summary: dict[str, Any]) -> None:
         for seat, title in (("unmoved", "as drawn"), ("fitted", "moved")):
             cells = (summary[f"{key}_{seat}_W"][who] for key in ("power_mean", "power_p10"))
             powers = (or_dash(power, ".2f") for power in cells)
-            rows.append((f"{who}, seat {title}", f"{100 * summary[f'share_{seat}'][who]:.1f}", *powers))
+            shares = (f"{100 * summary[f'{grade}_{seat}'][who]:.1f}" for grade in GRADES)
+            rows.append((f"{who}, seat {title}", *shares, *powers))
     title = f"{summary['design']}; {summary['group']}; {summary['samples']} of each sex"
-    print_table(title, ("", "can ride, %", "their mean power, W", "10th percentile, W"), rows)
+    heads = ("", "turns, %", "can ride, %", "inside the moments, %", "their mean power, W", "10th percentile, W")
+    print_table(title, heads, rows)

@@ -23,7 +23,7 @@ from fes_mj.simulation.mjcf import REAL, ModelOptions, Physics, build_mjcf
 from fes_mj.statics.equilibrium import equilibrium, virtual_work
 from fes_mj.statics.friction import BearingLoss, Bearings
 from fes_mj.statics.joint_forces import JointForces
-from fes_mj.statics.turn import TURN_POINTS, QuasiStatic
+from fes_mj.statics.turn import QuasiStatic, turn_points
 from fes_mj.statics.validity import turning_in_range
 
 
@@ -100,21 +100,21 @@ class Pipeline(Setup):
         self.edit_model(spec)
         return spec
 
-    def quasi_static(self, points: int, leg: str = "") -> QuasiStatic:
-        """The quasi-static turn of the leg with this name prefix, over so many crank angles.
+    def quasi_static(self, leg: str = "", points: int | None = None) -> QuasiStatic:
+        """The quasi-static turn of the leg with this name prefix, over so many crank angles (default turn_points).
 
         Raises AssemblyError if the linkage does not close.
         """
         torque = self.torque.of(leg)
         turning_in_range(self.design, torque.reference)
-        motion = self.motion(np.linspace(0, 2 * np.pi, points, endpoint=False))
+        motion = self.motion(np.linspace(0, 2 * np.pi, points or turn_points(self.design), endpoint=False))
         joint_moment = self.joint_moment(motion, leg)
         return QuasiStatic(motion, self.cadence, joint_moment, *self.equilibrium(motion, joint_moment), torque)
 
     @cached_property
     def friction(self) -> BearingLoss | None:
         """What the bearings of one leg lose, the right one's if the legs differ; None without friction."""
-        return BearingLoss(JointForces(self.quasi_static(TURN_POINTS)), self.bearings) if self.bearings else None
+        return BearingLoss(JointForces(self.quasi_static()), self.bearings) if self.bearings else None
 
     def crank_moment(
         self, motion: Motion, mass_scale: float = 1.0, gravity: float = GRAVITY, leg: str = ""

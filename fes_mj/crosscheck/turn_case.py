@@ -18,7 +18,7 @@ from fes_mj.simulation.bench import BenchOptions, Simulation
 from fes_mj.simulation.mjcf import Physics
 from fes_mj.statics.characteristics import power_characteristics
 from fes_mj.statics.joint_forces import JointForces
-from fes_mj.statics.turn import TURN_POINTS, LegTurns, QuasiStatic
+from fes_mj.statics.turn import LegTurns, QuasiStatic
 
 # The near-massless variant keeps so much of all masses that inertia adds this power to the quasi-static curve. With
 # less, the loops, whose stiffness MuJoCo scales with the masses, give way to the jumps of the torque map.
@@ -58,7 +58,7 @@ class Case(Brief, Setup):
     @cached_property
     def static(self) -> QuasiStatic:
         """The quasi-static turn. Raises AssemblyError if the linkage does not close."""
-        return self.steps.quasi_static(TURN_POINTS)
+        return self.steps.quasi_static()
 
     @cached_property
     def joint_forces(self) -> JointForces:
@@ -68,7 +68,7 @@ class Case(Brief, Setup):
     @cached_property
     def statics(self) -> LegTurns:
         """The quasi-static turns of all legs."""
-        own = () if self.moments.left is None or self.legs == 1 else (self.steps.quasi_static(TURN_POINTS, "left_"),)
+        own = () if self.moments.left is None or self.legs == 1 else (self.steps.quasi_static("left_"),)
         return LegTurns((self.static, *own), self.legs)
 
     @cached_property

@@ -23,10 +23,9 @@ from fes_mj.statics.characteristics import motion_characteristics, power_charact
 from fes_mj.statics.equilibrium import crank_moment, virtual_work
 from fes_mj.statics.extrapolation import beyond
 from fes_mj.statics.joint_forces import JointForces, peaks
-from fes_mj.statics.turn import TURN_POINTS, QuasiStatic, quasi_static
+from fes_mj.statics.turn import QuasiStatic, quasi_static, turn_points
 
 POINTS = 360  # crank angles of a turn, from 0, at which curves are sent
-STEP = TURN_POINTS // POINTS
 DIGITS = 3  # after the point, of curves in W and deg
 _ANGLES = np.linspace(0, 2 * np.pi, POINTS, endpoint=False)
 
@@ -42,13 +41,13 @@ def turn(design: Design, moments: Mapping[str, JointMoments], legs: int = 1) -> 
         solved = {name: quasi_static(design, own, points=POINTS) for name, own in moments.items()}
     except InputError as error:
         return answer | {"why": failing["text"] if failing else str(error), "broken": broken(design, None)}
-    motion = kinematics.solve(design, np.linspace(0, 2 * np.pi, TURN_POINTS, endpoint=False))
+    motion = kinematics.solve(design, np.linspace(0, 2 * np.pi, turn_points(design), endpoint=False))
     fine = {name: _fine(static, motion) for name, static in solved.items()}
-    first = next(iter(fine.values()))
+    first, coarse = (next(iter(turns.values())) for turns in (fine, solved))
     return answer | {
         "broken": broken(design, first),
         "numbers": _shown(_numbers(first)),
-        "joints": {joint: np.round(np.degrees(angle[::STEP]), DIGITS) for joint, angle in first.joint_angle.items()},
+        "joints": {joint: np.round(np.degrees(angle), DIGITS) for joint, angle in coarse.joint_angle.items()},
         "moments": {name: _under(static, fine[name], legs) for name, static in solved.items()},
     }
 

@@ -12,7 +12,7 @@ from scipy.cluster.vq import kmeans2
 
 from fes_mj.common.arrays import FloatArray
 from fes_mj.fit.population import PEOPLE
-from fes_mj.fit.seat import SEAT_LIMITS, Seats
+from fes_mj.fit.seats import SEAT_LIMITS, Seats
 from fes_mj.linkage.assembly import SCAN
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.kinematics import positions

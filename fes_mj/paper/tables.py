@@ -6,7 +6,7 @@ import numpy as np
 
 from fes_mj.common.markdown import Table
 from fes_mj.common.units import RPM
-from fes_mj.fit.population import PEOPLE, SEATS, PopulationFit
+from fes_mj.fit.population import GRADES, PEOPLE, SEATS, PopulationFit
 from fes_mj.linkage.design import Rider
 from fes_mj.linkage.riders import populations
 from fes_mj.moments.joint_moments import GROUPS
@@ -83,7 +83,8 @@ def population_table(fits: dict[str, PopulationFit]) -> Table:
     seats = zip(SEATS, ("as drawn", "moved"), strict=True)
     for (name, result), who, (seat, moved) in product(results.items(), PEOPLE, seats):
         powers = (result[f"power_{which}_{seat}_W"][who] for which in ("mean", "p10"))
-        rows.append((name.upper(), who, moved, 100 * result[f"share_{seat}"][who], *powers))
+        shares = (100 * result[f"{grade}_{seat}"][who] for grade in GRADES)
+        rows.append((name.upper(), who, moved, *shares, *powers))
     error = max(fit.map_error for fit in fits.values())
     sizes = {str(result["samples"]) for result in results.values()}
     return captioned("population", rows, samples=", ".join(sizes), error=f"{error:.2f}")

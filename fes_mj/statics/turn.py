@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
@@ -25,8 +25,11 @@ from fes_mj.statics.equilibrium import equilibrium
 from fes_mj.statics.extrapolation import NO_MORE, Extrapolation, extrapolation
 from fes_mj.statics.validity import valid_speed
 
-# Trapezium rule over a turn; against 36,000 points the mean power changes by less than 1e-5 of itself.
-TURN_POINTS = 3600
+# Of the trapezium rule over a turn, and up to which second derivative of a joint's angle by the crank's, 1/rad, these
+# are enough. Its error comes from the moments' jumps where a joint turns round; it goes with this derivative and with
+# the square of the step (docs/theory.md).
+TURN_POINTS, BLUNT = 3600, 2.0
+CURVE_POINTS = 360  # of which turn_points is a multiple: every degree is one of them
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -172,20 +175,33 @@ class QuasiStatic(DrivenTurn):
         }
 
 
+@lru_cache(maxsize=256)
+def turn_points(design: Design) -> int:
+    """Crank angles over which a turn is solved: TURN_POINTS, and more where a joint turns round more sharply."""
+    motion = kinematics.solve(design, _uniform(TURN_POINTS))
+    sharpest = max(float(np.abs(rotation.second).max()) for rotation in motion.joint_rotation)
+    needed = TURN_POINTS * math.sqrt(max(1.0, sharpest / BLUNT))
+    return CURVE_POINTS * math.ceil(needed / CURVE_POINTS)
+
+
+def _uniform(points: int) -> FloatArray:
+    return np.linspace(0, 2 * np.pi, points, endpoint=False)
+
+
 def quasi_static(
-    design: Design, moments: JointMoments, cadence: float | None = None, points: int = TURN_POINTS
+    design: Design, moments: JointMoments, cadence: float | None = None, points: int | None = None
 ) -> QuasiStatic:
     """Solve one turn of the massless, gravity-free model.
 
-    cadence: crank speed in rad/s, by default the design's own (Eq. 16). points: crank angles from 0, uniform.
-    Raises InputError for a batch of designs, a cadence that is none, or joints that never enter the moments' range,
-    AssemblyError if the linkage does not turn.
+    cadence: crank speed in rad/s, by default the design's own (Eq. 16). points: crank angles from 0, uniform, by
+    default turn_points. Raises InputError for a batch of designs, a cadence that is none, or joints that never enter
+    the moments' range, AssemblyError if the linkage does not turn.
 
     >>> fes_mj.quasi_static(fes_mj.load_design("d1"), fes_mj.load_moments("p1p2"))
     <QuasiStatic d1 p1p2: 31.14 W at 96.4 rpm>
     """
     speed = valid_speed(design, moments, cadence)
-    motion = kinematics.solve(design, np.linspace(0, 2 * np.pi, points, endpoint=False))
+    motion = kinematics.solve(design, _uniform(points or turn_points(design)))
     torque = torque_map(moments)
     joint_moment = torque.along(motion, speed)
     return QuasiStatic(motion, speed, joint_moment, *equilibrium(motion, joint_moment), torque)
@@ -223,7 +239,7 @@ class LegTurns:
 
     @classmethod
     def solve(
-        cls, design: Design, moments: JointMoments, cadence: float, legs: int = 1, points: int = TURN_POINTS
+        cls, design: Design, moments: JointMoments, cadence: float, legs: int = 1, points: int | None = None
     ) -> "LegTurns":
         """Solve so many legs at a cadence in rad/s. Raises InputError as quasi_static."""
         own = [moments] if legs == 1 or moments.left is None else [moments, moments.left]

@@ -102,7 +102,7 @@ def observed_order(sizes: list[float], errors: list[float]) -> float:
 def refine(case: Case) -> Refinement:
     """Run a case at every level; the first is the case's own run."""
     count = steps_per_turn(case.design, case.cadence, case.timestep)
-    exact = case.steps.quasi_static(EXACT_POINTS).work_per_turn
+    exact = case.steps.quasi_static(points=EXACT_POINTS).work_per_turn
     scale = case.power_scale * 2 * math.pi / case.cadence  # J
 
     def level(run: Simulation, loop_time: float) -> Level:

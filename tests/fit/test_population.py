@@ -5,8 +5,9 @@ import pytest
 
 import fes_mj
 from fes_mj.common.errors import InputError
-from fes_mj.fit.population import PopulationFit, PowerMap, fit_population
+from fes_mj.fit.population import PopulationFit, fit_population
 from fes_mj.fit.seat import fit_seat
+from fes_mj.fit.seats import SeatLimits
 from fes_mj.linkage.design import Rider
 
 SIZE = 30
@@ -21,7 +22,9 @@ def study() -> PopulationFit:
 @pytest.mark.long
 def test_who_can_ride_is_who_statics_accepts(study: PopulationFit) -> None:
     for riders in study.riders.values():
-        for thigh, shank, mass, unmoved, fitted in zip(*riders.legs, riders.unmoved, riders.fitted, strict=True):
+        for thigh, shank, mass, unmoved, fitted in zip(
+            *riders.legs, riders.unmoved.power, riders.fitted.power, strict=True
+        ):
             rider = Rider(thigh, shank, mass, riders.people.sex)
             try:
                 power = fes_mj.quasi_static(fes_mj.Design("r1", study.design.linkage, rider), study.moments).power_mean
@@ -38,7 +41,7 @@ def test_the_map_gives_the_power_of_a_seat_sought_for_one(study: PopulationFit) 
         rider = Rider(*(float(lengths[-1]) for lengths in riders.legs), riders.people.sex)
         static = fit_seat(study.design, rider, study.moments).static
         assert static
-        assert riders.fitted[-1] == pytest.approx(static.power_mean, abs=MAP_ERROR)
+        assert riders.fitted.power[-1] == pytest.approx(static.power_mean, abs=MAP_ERROR)
 
 
 @pytest.mark.long
@@ -46,13 +49,32 @@ def test_shares_and_powers_of_the_summary(study: PopulationFit) -> None:
     content = study.summary()
     assert content["samples"] == SIZE
     for who, riders in study.riders.items():
-        riding = riders.unmoved[np.isfinite(riders.unmoved)]
+        riding = riders.unmoved.power[np.isfinite(riders.unmoved.power)]
         assert content["share_unmoved"][who] == len(riding) / SIZE
         assert content["share_fitted"][who] == 1.0
         assert content["power_mean_unmoved_W"][who] == pytest.approx(riding.mean())
         assert content["power_p10_unmoved_W"][who] <= content["power_mean_unmoved_W"][who]
 
 
-def test_a_map_says_nothing_beside_a_node_without_power() -> None:
-    power_map = PowerMap(np.array([0.3, 0.4, 0.5]), np.array([0.4, 0.5]), np.array([[1.0, 3], [2, 4], [np.nan, 5]]))
-    assert power_map.at(np.array([0.35, 0.45]), np.array([0.45, 0.45])) == pytest.approx([2.5, np.nan], nan_ok=True)
+@pytest.mark.parametrize(
+    ("name", "limits"),
+    [
+        ("d1", SeatLimits((0.0, 0.0), (0.0, 0.0), (0.0, 0.0))),
+        ("r1", SeatLimits((0.0, 0.02), (-0.01, 0.01), (0.0, 0.0))),
+        pytest.param("trt", SeatLimits((-0.01, 0.0), (0.0, 0.03), (-0.05, 0.02)), marks=pytest.mark.long),
+    ],
+)
+def test_nobody_loses_by_a_seat_that_may_move(name: str, limits: SeatLimits, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Who turns, rides, stays inside as drawn does so moved: no more degrees outside, at equal ones no less power."""
+    for name_of, few in {"_NODES": 2, "_FINE": 2, "_PROBES": 1}.items():
+        monkeypatch.setattr(f"fes_mj.fit.population.{name_of}", few)
+    study = fit_population(fes_mj.load_design(name), fes_mj.load_moments("p1p2"), samples=100, limits=limits)
+    for riders in study.riders.values():
+        before, after = riders.unmoved, riders.fitted
+        for grade, those in before.grades.items():
+            assert np.all(after.grades[grade][those])
+        assert np.all(after.outside[before.turns] <= before.outside[before.turns])
+        same = before.turns & (after.outside == before.outside)
+        assert np.all(np.nan_to_num(after.power)[same] >= np.nan_to_num(before.power)[same])
+        if limits.forward == limits.up:
+            assert np.array_equal(after.power, before.power, equal_nan=True)

@@ -7,7 +7,9 @@ import numpy as np
 import pytest
 
 import fes_mj
-from fes_mj.fit.seat import SEAT_LIMITS, best_seats, fit_seat
+from fes_mj.fit.search import best_seats
+from fes_mj.fit.seat import fit_seat
+from fes_mj.fit.seats import SEAT_LIMITS
 from fes_mj.linkage.riders import populations
 from fes_mj.optimization.optimize import run_searches
 from fes_mj.optimization.people import ONE_RIDER, STATISTICS, sampled
