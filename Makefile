@@ -2,7 +2,7 @@
 PYTHON ?= python3
 VENV ?= .venv
 BIN = $(VENV)/bin
-EXTRAS = video,report,paper,explore,optimize,build,step,cluster
+EXTRAS = video,report,paper,explore,optimize,build,step,cluster,c3d
 GROUPS = --group test --group lint --group docs --group mjx
 PIP = $(BIN)/pip install --quiet -c constraints.txt
 PYTEST = $(BIN)/python -m pytest --numprocesses auto --dist worksteal

@@ -4,13 +4,21 @@ from pathlib import Path
 
 import numpy as np
 
-from fes_mj.cli.options import Out, PrintOptions, warn_of
+from fes_mj.cli.options import Flag, Out, PrintOptions, warn_of
 from fes_mj.cli.tables import span, with_error
 from fes_mj.common.console import print_table, verdict
 from fes_mj.common.errors import require_extra
 from fes_mj.common.units import RPM
-from fes_mj.common.writing import PICTURES, require_writable, write_text
-from fes_mj.moments.files import Measurement, load_measurement, load_moments, measured_files, moments_csv
+from fes_mj.common.writing import PICTURES, require_replaceable, require_writable, write_files
+from fes_mj.moments.files import (
+    Measurement,
+    load_measurement,
+    load_moments,
+    measured_files,
+    measurement_toml,
+    moments_csv,
+)
+from fes_mj.moments.identification import Identified, identify as identify_tricycle
 from fes_mj.moments.joint_moments import GROUPS, JointMoments
 
 
@@ -21,18 +29,23 @@ def moments(
     options: PrintOptions = PrintOptions(),
     plot: Path | None = None,
     out: Out | None = None,
+    identify: Flag = False,
 ) -> None:
     """Show what is understood of a file of joint moments, and warn of what looks misread.
 
     Args:
         file: A CSV with the header crank_angle_deg,knee_Nm,hip_Nm, a measurement file (.toml), p1p2 or p1p3.
         plot: Draw the moments over crank angle and over joint angle (.png or .svg).
-        out: Write them as plain CSV, a row a degree from top dead centre.
+        out: Write them as plain CSV, a row a degree from top dead centre, and beside it a measurement file (.toml) that
+            keeps the tricycle, which a plain CSV does not know.
+        identify: Find R1, R2 and the seat's angle from the recorded angles of knee and hip.
     """
     path = None if file in GROUPS else Path(file)
     inputs = measured_files(path) if path else []
     require_writable(plot, "the plot", PICTURES, inputs)
     require_writable(out, "the moments", ".csv", inputs)
+    beside = out.with_suffix(".toml") if out and path else None
+    require_replaceable([beside] if beside else [], "the tricycle of the moments", inputs)
     measurement = load_measurement(path) if path else Measurement.of(load_moments(file))
     warn_of(measurement.moments)
     if plot:
@@ -42,11 +55,20 @@ def moments(
 
         write_figure(plot, moments_figure, measurement)
     if out:
-        write_text(out, moments_csv(measurement.moments))
-    options.show(measurement.summary, lambda: _print(measurement), plot=plot, moments=out)
+        kept = {beside: measurement_toml(measurement.moments, out)} if beside else {}
+        write_files({out: moments_csv(measurement.moments), **kept}, unnamed=kept)
+    numbers = identify_tricycle(measurement.turns, measurement.moments.measured_on) if identify else []
+    identified = {"identified": [number._asdict() for number in numbers]} if identify else {}
+    options.show(
+        lambda: measurement.summary() | identified,
+        lambda: _print(measurement, numbers),
+        plot=plot,
+        moments=out,
+        measurement_file=beside,
+    )
 
 
-def _print(measurement: Measurement) -> None:
+def _print(measurement: Measurement, numbers: list[Identified]) -> None:
     content, own = measurement.summary(), measurement.moments
     counted = ", ".join(
         f"{content[what]} {what[:-1]}{'s' * (content[what] > 1)}" for what in ("riders", "trials", "turns", "samples")
@@ -70,6 +92,12 @@ def _print(measurement: Measurement) -> None:
             for row in measurement.comparisons
         ]
         print_table("Is it plausible?", ("", "recorded", "declared or expected", ""), compared)
+    if numbers:
+        found = [
+            (f"{row.symbol}, {row.unit}", f"{row.identified:.3f} +- {row.sd:.3f}", f"{row.declared:.3f}")
+            for row in numbers
+        ]
+        print_table("The tricycle by the angles of knee and hip", ("", "identified", "declared"), found)
 
 
 def _tricycle(own: JointMoments) -> str:

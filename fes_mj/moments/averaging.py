@@ -75,10 +75,14 @@ def _of_mean(rows: FloatArray) -> FloatArray | None:
     """Covariance of the mean of rows by their scatter; one deviation holds 68 %, however few they are."""
     if len(rows) < 2:
         return None
+    return np.asarray(few_factor(len(rows)) ** 2 * np.cov(rows.T) / len(rows))
+
+
+def few_factor(count: int) -> float:
+    """Student's factor by which the standard error of the mean of so many (two or more) is widened."""
     from scipy.special import ndtr, stdtrit
 
-    few = float(stdtrit(len(rows) - 1, ndtr(1.0)))
-    return np.asarray(few**2 * np.cov(rows.T) / len(rows))
+    return float(stdtrit(count - 1, ndtr(1.0)))
 
 
 def weights_on(measured_on: ReferenceTricycle) -> FloatArray:

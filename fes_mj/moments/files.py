@@ -1,5 +1,6 @@
 """Files of joint moments: plain CSV, measurement files and the trials they describe, curves drawn for a group."""
 
+import json
 import math
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -13,6 +14,7 @@ from fes_mj.common.reading import DATA
 from fes_mj.common.text import printable
 from fes_mj.common.units import RPM, turns_per_second
 from fes_mj.common.writing import csv_text
+from fes_mj.linkage.design_file import design_toml
 from fes_mj.linkage.joints import PerJoint
 from fes_mj.linkage.variables import VARIABLES
 from fes_mj.moments.averaging import (
@@ -23,6 +25,7 @@ from fes_mj.moments.averaging import (
     with_power_sd,
     without_spikes,
 )
+from fes_mj.moments.comparison import Comparison
 from fes_mj.moments.conventions import Convention
 from fes_mj.moments.fourier import fourier
 from fes_mj.moments.joint_moments import COLUMNS, GROUPS, JointMoments
@@ -36,7 +39,6 @@ from fes_mj.moments.measured_turns import (
 )
 from fes_mj.moments.measurement_file import Description
 from fes_mj.moments.plausibility import (
-    Comparison,
     cadence_agrees,
     comparisons,
     largest_gap,
@@ -147,6 +149,19 @@ def _plain_turns(path: Path) -> list[Turn]:
 def measured_files(path: Path) -> list[Path]:
     """The file itself and, of a measurement file, those that it names."""
     return [path, *Description.read(path).files] if path.suffix.lower() == ".toml" else [path]
+
+
+def measurement_toml(moments: JointMoments, data: Path) -> str:
+    """The measurement file beside the plain CSV of moments: the tricycle, rider and cadence that it does not know.
+
+    Raises InputError for a name that no such file can hold.
+    """
+    if not data.name.isprintable():
+        raise InputError(f"{printable(str(data))}: a measurement file cannot name this file; give it another name")
+    measured_on = moments.measured_on
+    head = f"[measured_on]\ncadence_rpm = {measured_on.cadence / RPM!r}" if moments.cadence_known else "[measured_on]"
+    tricycle = design_toml(measured_on.design).replace("[linkage]", head).replace("[rider]", "[measured_on.rider]")
+    return f"[moments]\nfile = {json.dumps(data.name, ensure_ascii=False)}\n{tricycle}"
 
 
 def moments_csv(moments: JointMoments) -> str:

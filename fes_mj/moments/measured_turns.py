@@ -96,7 +96,9 @@ def _by_crank(description: Description, recording: Recording, table: Table, sour
     after = angle + description.zero
     turns = []
     for row in by_crank(table, crank, angle) if timed else in_order(angle):
-        duration = float(time[row[-1]] - time[row[0]] + np.median(np.diff(time))) if timed else None
+        # the last sample lacks a step to a whole turn, in time as in angle
+        ends = row[[0, -1]]
+        duration = 2 * math.pi * float(np.ptp(time[ends]) / np.ptp(np.unwrap(after[row])[[0, -1]])) if timed else None
         angles = {joint: values[row] for joint, values in joint_angle.items()}
         moments = _moments(description, after[row], values[:, row], duration)
         moved = after[row] if angles else None

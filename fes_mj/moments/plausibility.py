@@ -2,50 +2,28 @@
 
 import math
 from collections.abc import Iterator, Sequence
-from typing import NamedTuple
 
 import numpy as np
 
 from fes_mj.common.arrays import FloatArray
 from fes_mj.common.units import RPM
 from fes_mj.linkage.joints import JOINTS
-from fes_mj.linkage.kinematics import solve
-from fes_mj.moments.conventions import SUREST, Convention
-from fes_mj.moments.fourier import WIDEST_GAP, fit, fourier, gaps
-from fes_mj.moments.joint_moments import JointMoments, Misreading
+from fes_mj.moments.comparison import Comparison
+from fes_mj.moments.conventions import Convention
+from fes_mj.moments.fourier import WIDEST_GAP, gaps
+from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.measured_turns import CountedAngle, Recording
+from fes_mj.moments.recorded_angles import counting, curves
 from fes_mj.moments.reference_tricycle import ReferenceTricycle
 from fes_mj.moments.turn import Turn
 
 LEAST_MOMENT = 2.0  # N m: a smaller largest one looks like N m/kg
 STRONG_LEG = 500.0  # N m: a larger one looks like N mm
-ANGLE_ERROR = 5.0  # deg: of joint angles by markers (McGinley et al. 2009, doi:10.1016/j.gaitpost.2008.09.003)
-_ZERO_ERROR = 10.0  # deg of crank angle: moments at a crank angle that is that far off lose 2 % of their power
 _CADENCE_ERROR = 0.05
 _UNEVEN = 0.3  # a turn so much longer or shorter than the middle one is a start, a pause or a stop
 _SETBACK = 10.0  # deg that a pedalling crank may go back
 _CONTRADICTION = 0.4  # of the curves' size: scatter that no rider shows from turn to turn
 _OPEN = 0.25  # of a moment's range, between the last sample of a turn and its first
-_TURN = np.radians(np.arange(360.0))
-
-
-class Comparison(NamedTuple):
-    """One thing that a file says, beside what is declared or assumed of it.
-
-    advice: what it can mean where they do not agree, and what to do.
-    """
-
-    name: str
-    quantity: str
-    recorded: str
-    declared: str
-    agrees: bool
-    advice: str = ""
-
-    @property
-    def misreading(self) -> Misreading:
-        """The contradiction as a warning."""
-        return Misreading(self.name, f"{self.quantity}: {self.recorded} recorded, {self.declared}; {self.advice}")
 
 
 def comparisons(
@@ -64,8 +42,8 @@ def comparisons(
     turns = recording.turns
     return [
         *_crank_unit(recording),
-        *(row for joint, counted in recording.angles.items() for row in _counting(joint, counted, said)),
-        *_curves(turns, declared, recording.crank_angle is not None),
+        *(row for joint, counted in recording.angles.items() for row in counting(joint, counted, said)),
+        *curves(turns, declared, recording.crank_angle is not None),
         *_time(turns, declared, cadence_said),
         Comparison(
             "spikes", "samples left out", f"{spikes}", "none expected", not spikes, "spikes, alone among others"
@@ -87,73 +65,6 @@ def _crank_unit(recording: Recording) -> Iterator[Comparison]:
     elif unit == "rad":
         degrees = largest > 60 * math.pi and step > math.pi
         yield Comparison("degrees", quantity, recorded, declared, not degrees, "is it in degrees?")
-
-
-def _counting(joint: str, counted: CountedAngle, said: Convention) -> Iterator[Comparison]:
-    """How a joint's angle is counted, and in which unit."""
-    sign = said.angle[joint]
-    declared = {1.0: "declared extension positive", -1.0: "declared flexion positive"}.get(sign, "not declared")
-    sense, (low, high) = counted.sense, counted.ends
-    found = f"{low:.0f} to {high:.0f} deg, {sense.words}"
-    usual = joint == "hip" or sense.sign > 0
-    yield Comparison(
-        f"{joint}_sense", f"{joint} angle counts", found, declared, sign == sense.sign or (not sign and usual),
-        f"a {joint} has such angles in this sense only; say so by moments.convention (rajagopal and winter count knee "
-        "flexion positive, gait2392 extension; they differ in the signs of the moments, too)",
-    )  # fmt: skip
-    if counted.header_unit:
-        yield Comparison(
-            f"{joint}_unit", f"{joint} angle, unit", counted.unit, f"header {counted.header_unit}",
-            counted.unit == counted.header_unit, "the header is wrong (inDegrees), the values count",
-        )  # fmt: skip
-
-
-def _curves(turns: Sequence[Turn], tricycle: ReferenceTricycle, crank_recorded: bool) -> Iterator[Comparison]:
-    """The recorded joint angles over the crank angle beside those of the tricycle."""
-    pose = solve(tricycle.design, _TURN + tricycle.top_dead_centre).joint_angle
-    advice = "was it on this tricycle, with this rider? Measure R1, R2, seat and legs again, or see --identify"
-    for joint in JOINTS:
-        parts = [
-            (turn.pose, turn.joint_angle[joint])
-            for turn in turns
-            if turn.pose is not None and joint in turn.joint_angle
-        ]
-        if not parts:
-            continue
-        angle, value = (np.concatenate(column) for column in zip(*parts, strict=True))
-        terms = fit(angle, value[:, None])[:, 0]
-        recorded, own = np.degrees(fourier(_TURN) @ terms), np.degrees(pose[joint])
-        ends = [(float(curve.min()), float(curve.max())) for curve in (recorded, own)]
-        words = [f"{low:.0f} to {high:.0f} deg" for low, high in ends]
-        offset = float(np.mean(recorded - own))
-        tilt = offset if joint == "hip" else 0.0  # of pelvis and trunk; nobody's knee is tilted
-        away = max(abs(a - tilt - b) for a, b in zip(*ends, strict=True))
-        yield Comparison(
-            f"{joint}_range", f"{joint} angle", words[0], f"{words[1]} on the tricycle", away <= ANGLE_ERROR, advice
-        )
-        shape = float(np.sqrt(np.mean((recorded - tilt - own) ** 2)))
-        if joint == "hip":
-            yield Comparison(
-                "hip_offset", "hip angle's offset", f"{offset:+.0f} deg",
-                f"a pelvis tilts up to {math.degrees(SUREST):.0f}",
-                abs(offset) <= math.degrees(SUREST), "are seat_angle and the direction of R1 right?",
-            )  # fmt: skip
-        if joint == "hip" or crank_recorded:
-            yield Comparison(
-                f"{joint}_curve", f"{joint} angle over the turn", f"{shape:.1f} deg from that of the tricycle (rms)",
-                f"up to {ANGLE_ERROR:g} expected", shape <= ANGLE_ERROR, advice,
-            )  # fmt: skip
-        if joint == "knee" and crank_recorded:
-            bent = math.degrees(np.angle(np.exp(1j * _phase(recorded)) / np.exp(1j * _phase(own))))
-            yield Comparison(
-                "zero", "knee bent most", f"{bent:+.0f} deg after top dead centre", "declared at 0",
-                abs(bent) <= _ZERO_ERROR, "are zero, leg and turning of the crank angle as declared?",
-            )  # fmt: skip
-
-
-def _phase(curve: FloatArray) -> float:
-    """Phase of the first harmonic of a curve at _TURN, rad: later curves have larger ones."""
-    return float(np.angle(curve @ np.exp(1j * _TURN)))
 
 
 def recorded_cadence(turns: Sequence[Turn]) -> float | None:

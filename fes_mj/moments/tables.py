@@ -15,6 +15,7 @@ import numpy as np
 from fes_mj.common.arrays import FloatArray
 from fes_mj.common.errors import InputError
 from fes_mj.common.reading import LARGEST_INPUT, read_bytes
+from fes_mj.moments.c3d_file import c3d_columns
 
 OPENSIM = (".sto", ".mot")
 _END_OF_HEADER = "endheader"
@@ -23,14 +24,13 @@ csv.field_size_limit(LARGEST_INPUT)  # a comment may be long
 _LOOKED_AT = 5  # last lines, by which the separator is told
 _SHOWN = 40  # letters of a bad cell
 _LEAST_ROWS = 10  # all with the same decimals, before a last one with fewer was cut off
-_KINDS = "fes_mj reads text tables: CSV (commas, semicolons, tabs or blanks) and OpenSim's .sto and .mot"
+_KINDS = "fes_mj reads text tables, CSV (commas, semicolons, tabs or blanks) and OpenSim's .sto and .mot, and .c3d"
 # What other files must become first.
 _WAYS = {
     ".mat": "in MATLAB: writetable(struct2table(S), 'trial.csv')",
     ".xlsx": "save the sheet as CSV",
     ".xls": "save the sheet as CSV",
     ".ods": "save the sheet as CSV",
-    ".c3d": "export time, joint angles and moments as text (Visual3D, Nexus, Mokka), or run OpenSim's inverse dynamics",
     ".trc": "markers tell no moments: run OpenSim's inverse kinematics and inverse dynamics, which write .mot and .sto",
 }
 # Names of a column of times, and units that may follow.
@@ -111,6 +111,10 @@ def load_table(path: Path, what: str, wanted: Collection[str] = ()) -> Table:
     wanted: columns; of several header lines the one counts that names most of them. Raises InputError naming file and
     line, for what is no text table with the way to one, and for a file that is not as long as it says.
     """
+    if path.suffix.lower() == ".c3d":
+        columns = c3d_columns(path)
+        frames = [[*frame] for frame in zip(*columns.values(), strict=True)]
+        return Table(path, "", 1, [*columns], [*range(1, len(frames) + 1)], frames)
     text = _text(path, what)
     lines = text.splitlines()
     end = next((number for number, line in enumerate(lines, 1) if line.strip().lower() == _END_OF_HEADER), 0)
@@ -137,15 +141,15 @@ def _text(path: Path, what: str) -> str:
     data, suffix = read_bytes(path, what), path.suffix.lower()
     if suffix in _WAYS:
         _refuse_kind(path, suffix)
-    for marks, encoding in (((b"\xff\xfe", b"\xfe\xff"), "utf-16"), ((b"",), "utf-8-sig")):
-        if data.startswith(marks):
-            try:
-                return data.decode(encoding)
-            except UnicodeDecodeError:
-                break
-    if b"\0" in data:
+    wide = data.startswith((b"\xff\xfe", b"\xfe\xff"))
+    if b"\0" in data and not wide:
         _refuse_kind(path, suffix)
-    return data.decode("cp1252", errors="replace")
+    try:
+        return data.decode("utf-16" if wide else "utf-8-sig")
+    except UnicodeDecodeError:
+        if wide:
+            _refuse_kind(path, suffix)
+        return data.decode("cp1252", errors="replace")
 
 
 def _refuse_kind(path: Path, suffix: str) -> NoReturn:

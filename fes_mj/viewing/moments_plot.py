@@ -4,26 +4,62 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from fes_mj.common.arrays import FloatArray
 from fes_mj.common.style import COLOURS, FAINT, literal
 from fes_mj.linkage.joints import JOINTS
+from fes_mj.linkage.kinematics import solve
 from fes_mj.moments.files import Measurement
 from fes_mj.moments.fourier import WIDEST_GAP, fourier, gaps
+from fes_mj.moments.recorded_angles import recorded_curve
 from fes_mj.moments.torque_map import torque_map
 
 _SAMPLES = 2000  # of a turn that are drawn at most
 
 
 def moments_figure(measurement: Measurement) -> Figure:
-    """Three plots beside each other: both moments over crank angle, either joint's over its own angle."""
-    figure = Figure(figsize=(10.0, 4.2), layout="constrained")
-    over_crank, knee, hip = figure.subplots(1, 3, width_ratios=[1.6, 1, 1])
-    _over_crank(over_crank, measurement)
-    for axes, joint in ((knee, "knee"), (hip, "hip")):
-        _over_joint(axes, measurement, joint)
+    """Both moments over crank angle, either joint's over its own, and recorded joint angles over the tricycle's."""
+    recorded = any(turn.joint_angle for turn in measurement.turns)
+    figure = Figure(figsize=(10.0, 7.4 if recorded else 4.2), layout="constrained")
+    if recorded:
+        axes = figure.subplot_mosaic([["moments", "knee"], ["angles", "hip"]], width_ratios=[1.6, 1])
+    else:
+        axes = figure.subplot_mosaic([["moments", "knee", "hip"]], width_ratios=[1.6, 1, 1])
+    _over_crank(axes["moments"], measurement)
+    if recorded:
+        _angles(axes["angles"], measurement)
+    for joint in JOINTS:
+        _over_joint(axes[joint], measurement, joint)
     title = literal(f"{measurement.moments.name}: joint moments of one leg, extension positive")
     figure.suptitle(title, weight="bold", x=0.01, ha="left")
-    figure.legend(*over_crank.get_legend_handles_labels(), loc="outside lower left", ncols=4)
+    entries = {
+        label: handle for part in axes.values() for handle, label in zip(*part.get_legend_handles_labels(), strict=True)
+    }  # one entry for what several plots show
+    figure.legend(entries.values(), entries.keys(), loc="outside lower left", ncols=6)
     return figure
+
+
+def _samples(axes: Axes, joint: str, crank_angle: FloatArray, values: FloatArray) -> None:
+    """Samples over the crank angle (rad), faint and behind the curves."""
+    step = max(1, len(values) // _SAMPLES)
+    at = np.degrees(crank_angle[::step]) % 360
+    axes.plot(at, values[::step], ".", color=COLOURS[joint], ms=2, alpha=0.3, zorder=1)
+
+
+def _angles(axes: Axes, measurement: Measurement) -> None:
+    """Recorded joint angles over the crank angle, and those of the declared tricycle."""
+    angle, reference = np.arange(361.0), measurement.moments.measured_on
+    pose = solve(reference.design, np.radians(angle) + reference.top_dead_centre).joint_angle
+    for turn in measurement.turns:
+        for joint, values in turn.joint_angle.items():
+            if turn.pose is not None:
+                _samples(axes, joint, turn.pose, np.degrees(values))
+    for joint in JOINTS:
+        recorded = recorded_curve(measurement.turns, joint)
+        if recorded is not None:
+            axes.plot(angle[:-1], recorded, color=COLOURS[joint], label=joint)
+        axes.plot(angle, np.degrees(pose[joint]), ":", color=COLOURS[joint], label=f"{joint} of the declared tricycle")
+    axes.set(xlim=(0, 360), xticks=range(0, 361, 60))
+    axes.set(xlabel="crank angle from top dead centre, deg", ylabel="joint angle, deg")
 
 
 def _over_crank(axes: Axes, measurement: Measurement) -> None:
@@ -37,14 +73,12 @@ def _over_crank(axes: Axes, measurement: Measurement) -> None:
     curves, terms = moments.at(angle), fourier(angle)
     for joint in JOINTS:
         for turn in measurement.turns:
-            step = max(1, len(turn.knee) // _SAMPLES)
-            at = np.degrees(turn.crank_angle[::step]) % 360
-            axes.plot(at, getattr(turn, joint)[::step], ".", color=COLOURS[joint], ms=4, alpha=0.5)
+            _samples(axes, joint, turn.crank_angle, getattr(turn, joint))
         axes.plot(np.degrees(angle), curves[joint], color=COLOURS[joint], label=joint)
         if moments.covariance is not None:
             deviation = np.linalg.norm(terms @ moments.deviations[joint], axis=-1)
             ends = curves[joint] - deviation, curves[joint] + deviation
-            axes.fill_between(np.degrees(angle), *ends, color=COLOURS[joint], alpha=0.2, lw=0, label="one sd")
+            axes.fill_between(np.degrees(angle), *ends, color=COLOURS[joint], alpha=0.2, lw=0, label=f"{joint}, one sd")
     horizontal = float(np.degrees(-moments.measured_on.top_dead_centre) % 360)
     for zero, text in ((0.0, "top dead centre"), (horizontal, "crank points backwards:\nzero of all outputs")):
         axes.axvline(zero, color=FAINT, lw=1, ls=(0, (4, 2)))
@@ -64,10 +98,9 @@ def _over_joint(axes: Axes, measurement: Measurement, joint: str) -> None:
     """The torque map of a joint: moment over joint angle, extending and flexing."""
     torque = torque_map(measurement.moments)
     angle = np.linspace(*torque.reference.ranges[joint], 200)
-    for label, rate, style in (("extending", 1.0, "-"), ("flexing", -1.0, "--")):
+    for label, rate, style in ((joint, 1.0, "-"), (f"{joint}, flexing", -1.0, "--")):
         moment = torque.at_source(joint, torque.source_angle(joint, angle, rate))
         axes.plot(np.degrees(angle), moment, style, color=COLOURS[joint], label=label)
     axes.axhline(0, color="black", lw=0.7)
     axes.set(xlabel=f"{joint} angle, deg")
-    axes.set_title(joint, loc="left")
-    axes.legend()
+    axes.set_title(f"{joint}, extending and flexing", loc="left")

@@ -1,5 +1,6 @@
 """`fes_mj moments`: what it prints, draws and writes, and what it refuses."""
 
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -8,7 +9,7 @@ import pytest
 from fes_mj.cli.app import run
 from fes_mj.common.writing import csv_text
 from fes_mj.moments.joint_moments import COLUMNS
-from tests.cli.conftest import answer, result
+from tests.cli.conftest import answer, names, result
 
 TRIAL = Path(__file__).parents[2] / "examples" / "trial" / "trial.toml"
 
@@ -24,6 +25,49 @@ def test_json_and_table_say_the_same(capsys: pytest.CaptureFixture[str]) -> None
     code, out, _ = result(capsys, "moments", str(TRIAL))
     assert f"{content['power_mean_W']:.2f} +- {content['power_sd_W']:.2f}" in out
     assert "47.00 rpm" in out
+
+
+def test_what_is_plausible_is_the_same_in_table_and_json(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    """The rows that contradict are the warnings, with both numbers, on standard error and in JSON."""
+    for name in ("id.sto", "ik.mot"):
+        shutil.copy(TRIAL.with_name(name), tmp_path)
+    (path := tmp_path / "wrong.toml").write_text(TRIAL.read_text().replace("cadence_rpm = 47", "cadence_rpm = 80"))
+    code, content = answer(capsys, "moments", str(path))
+    assert code == 0
+    assert [row["name"] for row in content["plausibility"] if not row["agrees"]] == ["cadence"]
+    assert [warning["name"] for warning in content["warnings"]] == ["cadence"]
+    _, out, err = result(capsys, "moments", str(path))
+    for text in (content["warnings"][0]["text"], err):
+        assert "47.0 rpm recorded, declared 80.0" in text
+    (row,) = (line for line in out.splitlines() if line.split()[:1] == ["cadence"])
+    assert row.split() == ["cadence", "47.0", "rpm", "declared", "80.0", "contradicts"]
+
+
+def test_the_tricycle_is_identified(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    _, content = answer(capsys, "moments", str(TRIAL), "--identify")
+    assert [number["symbol"] for number in content["identified"]] == ["R1", "R2", "seat_angle"]
+    assert all(number["identified"] == pytest.approx(number["declared"], rel=1e-4) for number in content["identified"])
+    _, out, _ = result(capsys, "moments", str(TRIAL), "--identify")
+    assert "0.130 +- 0.000" in out
+    assert "identified" not in answer(capsys, "moments", str(TRIAL))[1]
+    (own := tmp_path / "own.csv").write_text(",".join(COLUMNS) + "\n0,1,2\n90,20,-3\n200,-5,4\n")
+    code, _, err = result(capsys, "moments", str(own), "--identify")
+    assert code == 2
+    assert "angles of knee and hip" in err
+
+
+def test_what_is_written_keeps_its_tricycle(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    written = tmp_path / "mine.csv"
+    assert run(["moments", str(TRIAL), "-o", str(written), "-q"]) == 0
+    assert names(tmp_path) == {"mine.csv", "mine.toml"}
+    original, again = (answer(capsys, "moments", str(path))[1] for path in (TRIAL, written.with_suffix(".toml")))
+    for key in ("power_mean_W", "cadence_rpm", "work_per_turn_J"):
+        assert again[key] == pytest.approx(original[key], rel=1e-6)
+    assert again["warnings"] == []
+    written.with_suffix(".toml").write_text("mine\n")
+    code, _, err = result(capsys, "moments", str(TRIAL), "-o", str(written))
+    assert code == 2
+    assert "mine.toml: cannot write" in err
 
 
 def test_groups_are_shown_too(capsys: pytest.CaptureFixture[str]) -> None:
