@@ -48,6 +48,7 @@ def moments(
     require_replaceable([beside] if beside else [], "the tricycle of the moments", inputs)
     measurement = load_measurement(path) if path else Measurement.of(load_moments(file))
     warn_of(measurement.moments)
+    numbers = identify_tricycle(measurement.turns, measurement.moments.measured_on) if identify else []
     if plot:
         require_extra("report", "matplotlib")
         from fes_mj.viewing.charts import write_figure
@@ -57,7 +58,6 @@ def moments(
     if out:
         kept = {beside: measurement_toml(measurement.moments, out)} if beside else {}
         write_files({out: moments_csv(measurement.moments), **kept}, unnamed=kept)
-    numbers = identify_tricycle(measurement.turns, measurement.moments.measured_on) if identify else []
     identified = {"identified": [number._asdict() for number in numbers]} if identify else {}
     options.show(
         lambda: measurement.summary() | identified,

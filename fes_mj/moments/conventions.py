@@ -44,20 +44,20 @@ _SENSES = (
     AngleSense("extension positive", 1.0, math.pi),
     AngleSense("angle between the segments", 1.0, 0.0),
 )
-# A hip's angle counts from pelvis or trunk, whose tilt is not that of the seat.
-SUREST = math.radians(20)
+# Rad: a hip's angle counts from pelvis or trunk, whose tilt is not that of the seat.
+LARGEST_TILT = math.radians(20)
 
 
 def angle_sense(joint: str, angle: FloatArray, declared: float, measured_on: ReferenceTricycle) -> AngleSense:
     """How the angles (rad, shape (n,)) of a joint are counted: so that they lie nearest to those of the tricycle.
 
-    declared: sign of extension, which counts unless another sense brings them nearer by over SUREST; 0 if unsaid.
+    declared: sign of extension, which counts unless another sense brings them nearer by over LARGEST_TILT; 0 if unsaid.
     """
     middle = sum(measured_on.ranges[joint]) / 2
 
     def distance(sense: AngleSense) -> float:
         extending = sense.extending(angle)
         away = abs(float(extending.max() + extending.min()) / 2 - middle)
-        return away + SUREST * (sense.sign == -declared)
+        return away + LARGEST_TILT * (sense.sign == -declared)
 
     return min(_SENSES, key=distance)

@@ -9,7 +9,7 @@ from fes_mj.common.arrays import FloatArray
 from fes_mj.linkage.joints import JOINTS
 from fes_mj.linkage.kinematics import solve
 from fes_mj.moments.comparison import Comparison
-from fes_mj.moments.conventions import SUREST, Convention
+from fes_mj.moments.conventions import LARGEST_TILT, Convention
 from fes_mj.moments.fourier import fit, fourier
 from fes_mj.moments.measured_turns import CountedAngle
 from fes_mj.moments.reference_tricycle import ReferenceTricycle
@@ -27,7 +27,7 @@ def counting(joint: str, counted: CountedAngle, said: Convention) -> Iterator[Co
     declared = {1.0: "declared extension positive", -1.0: "declared flexion positive"}.get(sign, "not declared")
     sense, (low, high) = counted.sense, counted.ends
     found = f"{low:.0f} to {high:.0f} deg, {sense.words}"
-    usual = joint == "hip" or sense.sign > 0
+    usual = joint == "hip" or sense.sign > 0 or said.moment[joint] != 0
     yield Comparison(
         f"{joint}_sense", f"{joint} angle counts", found, declared, sign == sense.sign or (not sign and usual),
         f"a {joint} has such angles in this sense only; say so by moments.convention (rajagopal and winter count knee "
@@ -70,7 +70,7 @@ def _curve(joint: str, recorded: FloatArray, own: FloatArray, crank_recorded: bo
         f"{joint}_range", f"{joint} angle", words[0], f"{words[1]} on the tricycle", away <= ANGLE_ERROR, _ADVICE
     )
     if joint == "hip":
-        most = math.degrees(SUREST)
+        most = math.degrees(LARGEST_TILT)
         yield Comparison(
             "hip_offset", "hip angle's offset", f"{tilt:+.0f} deg", f"a pelvis tilts up to {most:.0f}",
             abs(tilt) <= most, "are seat_angle and the direction of R1 right?",

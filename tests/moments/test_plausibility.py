@@ -53,6 +53,10 @@ def test_what_is_not_declared_is_found_and_said(tmp_path: Path) -> None:
     assert load_measurement(path).summary()["work_per_turn_J"] == pytest.approx(work(), rel=1e-3)
     path = measurement(tmp_path, replace(PLAIN, convention="rajagopal"), 'extension = { hip = "negative" }\n')
     assert warnings(path) == {"knee_sense", "negative_power", "exchanged"}
+    path = measurement(
+        tmp_path, replace(PLAIN, convention="rajagopal"), 'extension = { knee = "negative", hip = "negative" }\n'
+    )
+    assert warnings(path) == set()  # who says the moment's sign has looked; the angle's values tell its own
     path = measurement(tmp_path, PLAIN, "extension = {}\n")
     assert warnings(path) == {"hip_sign"}
 
