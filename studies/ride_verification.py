@@ -1,18 +1,24 @@
-"""Do the two solvers of `fes_mj ride` agree? The paper's designs, both groups, both transmissions, flat and uphill.
+"""Do the two solvers of `fes_mj ride` agree? The paper's designs, and random linkages down to their dead centres.
 
-    python -m studies.ride_verification [--duration 60] [--out results/ride_verification.md]
+    python -m studies.ride_verification [--random 200] [--seed 1] [--out results/ride_verification.md]
 
-On the flat with Hill's relation; uphill speed-free, on the slope that the mean power balances at 5.71 km/h.
+The paper's designs with both groups and transmissions, for a minute: on the flat with Hill's relation, and speed-free
+on the slope that the mean power balances at 5.71 km/h. Random linkages 0.2 to 30 mm from their dead centres for ten
+seconds.
 """
 
 import argparse
-from collections.abc import Iterator
+import time
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from fes_mj.common.checks import Check
+import numpy as np
+
+from fes_mj.common.checks import Check, definitions
 from fes_mj.common.console import track
+from fes_mj.common.errors import InputError
 from fes_mj.common.markdown import Table
 from fes_mj.common.writing import write_text
 from fes_mj.crosscheck.ride_case import RideCase
@@ -20,44 +26,68 @@ from fes_mj.linkage.design_file import DESIGNS, load_design
 from fes_mj.moments.files import load_moments
 from fes_mj.moments.joint_moments import GROUPS
 from fes_mj.moments.torque_velocity import load_torque_velocity
-from fes_mj.riding.ride import TRANSMISSIONS, Ride, balancing_slope
+from fes_mj.riding.ride import TRANSMISSIONS, Ride, Road, balancing_slope
+from studies.random_linkages import random_design
 
 ROOT = Path(__file__).parents[1]
+DURATION, RANDOM_DURATION = 60.0, 10.0  # s
+NEAREST = 2e-4  # m from a dead centre
+SLOPES = (-0.06, 0.20)
 
 
-def rides(duration: float) -> Iterator[Ride]:
+def paper_rides() -> Iterator[Ride]:
     """All combinations."""
     hill = load_torque_velocity("hill")
     for name in DESIGNS:
         for group in GROUPS:
             moments = load_moments(group)
             for transmission in TRANSMISSIONS:
-                ride = Ride(load_design(name), moments, transmission=transmission, duration=duration)
+                ride = Ride(load_design(name), moments, transmission=transmission, duration=DURATION)
                 yield replace(ride, moments=moments.at_speed(hill))
                 yield replace(ride, road=replace(ride.road, slope=balancing_slope(ride)))
 
 
+def random_rides(count: int, seed: int) -> Iterator[Ride]:
+    """Each on a linkage of its own; transmissions and muscles take turns. A quarter starts from rest."""
+    rng, relations = np.random.default_rng(seed), (None, load_torque_velocity("hill"))
+    for number in range(count):
+        moments = replace(load_moments(str(rng.choice(GROUPS))), torque_velocity=relations[number // 2 % 2])
+        yield Ride(
+            random_design(rng, nearest=NEAREST),
+            moments,
+            Road(slope=float(rng.uniform(*SLOPES))),
+            transmission=TRANSMISSIONS[number % 2],
+            launch=0.0 if rng.random() < 0.25 else float(rng.uniform(0.5, 5.0)),
+            start=float(rng.uniform(0, 2 * np.pi)),
+            duration=RANDOM_DURATION,
+        )
+
+
 class Outcome(NamedTuple):
-    """What is kept of a ride, whose records fill a hundred megabytes."""
+    """What is kept of a ride, whose records fill a hundred megabytes; nothing if it was refused."""
 
     ride: Ride
     summary: dict[str, Any]
     checks: tuple[Check, ...]
+    seconds: float
 
     @property
     def worst(self) -> float:
         """The largest check, in limits."""
-        return max(check.factor for check in self.checks)
+        return max((check.factor for check in self.checks), default=0.0)
 
 
 def outcome(ride: Ride) -> Outcome:
     """Ride once, both ways."""
-    case = RideCase(ride)
-    return Outcome(ride, case.summary(), case.checks)
+    case, start = RideCase(ride), time.process_time()
+    try:
+        return Outcome(ride, case.summary(), case.checks, time.process_time() - start)
+    except InputError:
+        return Outcome(ride, {}, (), 0.0)
 
 
-def tables(outcomes: list[Outcome]) -> Iterator[Table]:
-    """What came out, and how far the solvers are apart."""
+def paper_table(outcomes: Sequence[Outcome]) -> Table:
+    """What came out, and how far the solvers are apart; a ride whose checks fail has no row."""
     columns = {
         "design": "",
         "group": "",
@@ -68,9 +98,14 @@ def tables(outcomes: list[Outcome]) -> Iterator[Table]:
         "freewheeling, %": ".1f",
         "stopped after, s": ".2f",
         "worst check, in limits": ".2g",
+        "time step, ms": ".3f",
+        "uncertain by, %": ".2g",
     }
     rows = []
-    for ride, result, checks in outcomes:
+    for done in outcomes:
+        ride, result = done.ride, done.summary
+        if not result["agrees"]:
+            continue
         ripple = result["speed_ripple"]
         rows.append(
             (
@@ -82,35 +117,82 @@ def tables(outcomes: list[Outcome]) -> Iterator[Table]:
                 None if ripple is None else 100 * ripple,
                 100 * result["freewheel_share"],
                 result["stopped_at_s"],
-                max(check.factor for check in checks),
+                done.worst,
+                1e3 * result["timestep_s"],
+                100 * max(result["numerical_uncertainty"].values()),
             )
         )
     note = "Flat with Hill's relation, uphill speed-free on the slope that the mean power balances at 5.71 km/h."
-    yield Table("Rides in MuJoCo", columns, rows, note)
+    return Table("Rides in MuJoCo", columns, rows, note)
+
+
+def random_table(outcomes: Sequence[Outcome]) -> Table:
+    """By transmission and muscles: verdicts, refused and failed, and what they took."""
+    columns = {
+        "transmission": "",
+        "muscles": "",
+        "rides": "d",
+        "refused": "d",
+        "failed": "d",
+        "verdicts": "",
+        "worst check, in limits": ".2g",
+        "uncertain by at most, %": ".2g",
+        "smallest time step, ms": ".3f",
+        "slowest, s": ".0f",
+    }
+    rows = []
+    for number in range(4):
+        own = outcomes[number::4]
+        done = [one for one in own if one.checks]
+        words = [one.summary["verdict"] for one in done]
+        rows.append(
+            (
+                own[0].ride.transmission,
+                "Hill's" if own[0].ride.moments.torque_velocity else "speed-free",
+                len(own),
+                len(own) - len(done),
+                sum(one.worst > 1 for one in done),
+                ", ".join(f"{words.count(word)} {word}" for word in sorted(set(words))),
+                max(one.worst for one in done),
+                100 * max(max(one.summary["numerical_uncertainty"].values()) for one in done),
+                1e3 * min(one.summary["timestep_s"] for one in done),
+                max(one.seconds for one in done),
+            )
+        )
+    failed = [one.ride.name for one in outcomes if one.worst > 1]
+    return Table("Random linkages", columns, rows, f"Failed: {'; '.join(failed) or 'none'}.")
+
+
+def checks_table(title: str, outcomes: Sequence[Outcome]) -> Table:
+    """The worst of each check."""
+    checks = [check for one in outcomes for check in one.checks]
+    names = [name for name in definitions() if any(check.name == name for check in checks)]
+    worst = [max((check for check in checks if check.name == name), key=lambda check: check.factor) for name in names]
     columns = {"check": "", "largest value": ".2g", "limit": "g", "unit": "", "in": ""}
-    yield Table(
-        "Checks",
-        columns,
-        [
-            (check.name, check.value, check.limit, check.unit, check.subject)
-            for same in zip(*(outcome.checks for outcome in outcomes), strict=True)
-            for check in [max(same, key=lambda check: check.factor)]
-        ],
-    )
+    rows = [(check.name, check.value, check.limit, check.unit, check.subject) for check in worst]
+    return Table(title, columns, rows)
 
 
 def main() -> None:
     """Ride all, write the page; exit code 1 if a check fails."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--duration", type=float, default=60.0)
+    parser.add_argument("--random", type=int, default=200)
+    parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--out", type=Path, default=ROOT / "results" / "ride_verification.md")
     arguments = parser.parse_args()
-    outcomes = [outcome(ride) for ride in track([*rides(arguments.duration)], "rides")]
-    title = "Do the two solvers of a ride agree?"
-    origin = "Written by `python -m studies.ride_verification`; see docs/theory.md."
-    pages = "\n".join(table.markdown() for table in tables(outcomes))
-    write_text(arguments.out, f"# {title}\n\n{origin}\n\n{pages}")
-    if max(outcome.worst for outcome in outcomes) > 1:
+    paper = [outcome(ride) for ride in track([*paper_rides()], "rides")]
+    chance = [outcome(ride) for ride in track([*random_rides(arguments.random, arguments.seed)], "random rides")]
+    tables = (
+        paper_table(paper),
+        checks_table("Checks", paper),
+        random_table(chance),
+        checks_table("Checks of random linkages", chance),
+    )
+    head = (
+        "# Do the two solvers of a ride agree?\n\nWritten by `python -m studies.ride_verification`; see docs/theory.md."
+    )
+    write_text(arguments.out, f"{head}\n\n" + "\n".join(table.markdown() for table in tables))
+    if max(one.worst for one in (*paper, *chance)) > 1:
         raise SystemExit(1)
 
 

@@ -127,7 +127,7 @@ def _texts(case: fes_mj.RideCase, starts: Starts | None, result: str) -> list[st
     from fes_mj.simulation.export import mjcf_text
     from fes_mj.simulation.road_mjcf import build_road_mjcf
 
-    texts = [result, case.trace_csv(), mjcf_text(build_road_mjcf(case.ride, case.timestep))]
+    texts = [result, case.trace_csv(), mjcf_text(build_road_mjcf(case.ride, case.simulation.timestep))]
     if starts:
         from fes_mj.viewing.rings import starts_svg
 
@@ -137,9 +137,12 @@ def _texts(case: fes_mj.RideCase, starts: Starts | None, result: str) -> list[st
 
 def _print(case: fes_mj.RideCase, starts: Starts | None) -> None:
     ride, run = case.ride, case.simulation.trace
-    road = f"{ride.transmission}{' gear' if ride.fixed else ''}, {100 * ride.road.slope:g} % slope"
-    title = f"{what_moves(ride.design, ride.moments.driver)}; {road}"
-    print_table(title, ("", "MuJoCo", "reduced model"), beside(_rows(run), _rows(case.reference)))
+    if case.agrees:
+        road = f"{ride.transmission}{' gear' if ride.fixed else ''}, {100 * ride.road.slope:g} % slope"
+        title = f"{what_moves(ride.design, ride.moments.driver)}; {road}"
+        error = case.uncertainty
+        rows = beside(_rows(run, error["mujoco"]), _rows(case.reference, error["reduced"]))
+        print_table(title, ("", "MuJoCo", "reduced model"), rows)
     print_checks("Checks", case.checks)
     if starts:
         rows = [
@@ -148,23 +151,22 @@ def _print(case: fes_mj.RideCase, starts: Starts | None) -> None:
             ("steepest slope, %", or_dash(starts.slope and 100 * starts.slope, ".2f")),
         ]
         print_table("Starts, by the reduced model", ("", ""), rows)
-    if run.rides:
-        say(f"It rides: {or_dash(run.mean_speed and run.mean_speed / KMH, '.2f')} km/h at the end.", "bold")
-    else:
-        say(f"It stops after {run.stopped_at:.1f} s and {run.distance.max():.1f} m.", "bold")
+    say(case.sentence, "bold")
     conclude_checks("The two solvers", case.checks)
 
 
-def _rows(trace: Trace) -> list[tuple[str, str]]:
+def _rows(trace: Trace, uncertainty: float) -> list[tuple[str, str]]:
     """Quantity and value of one solver, as text."""
     speed, cadence, ripple = trace.mean_speed, trace.cadence, trace.ripple
     return [
         ("speed over the last turns, km/h", or_dash(speed and speed / KMH, ".3f")),
+        ("numerical uncertainty of the speed, %", f"{100 * uncertainty:.2g}"),
         ("cadence, rpm", or_dash(cadence and cadence / RPM, ".1f")),
         ("speed ripple, %", or_dash(ripple and 100 * ripple, ".2f")),
         ("freewheeling, % of the time", f"{100 * trace.coasting_share:.1f}"),
         ("distance, m", f"{trace.distance.max():.2f}"),
         ("stopped after, s", or_dash(trace.stopped_at, ".2f")),
+        ("ended after, s", f"{trace.time[-1]:.2f}"),
         ("muscle power, W", or_dash(trace.muscle_power, ".2f")),
         ("road power, W", or_dash(trace.road_power, ".2f")),
     ]

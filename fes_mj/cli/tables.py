@@ -111,9 +111,15 @@ def print_notes(result: DrivenTurn, of: str = "") -> None:
 
 
 def print_checks(title: str, checks: Sequence[Check]) -> None:
-    """Print name, value, limit and verdict of checks."""
+    """Print name, value, limit and verdict of checks; nothing is green where one fails."""
+    good = verdict(True) if all(check.ok for check in checks) else "ok"
     rows: list[tuple[str | Text, ...]] = [
-        (check.name, number(check.value, check.unit), number(check.limit, check.unit), verdict(check.ok))
+        (
+            check.name,
+            number(check.value, check.unit),
+            number(check.limit, check.unit),
+            good if check.ok else verdict(False),
+        )
         for check in checks
     ]
     print_table(title, ("check", "value", "limit", "verdict"), rows)

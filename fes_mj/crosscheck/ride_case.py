@@ -8,19 +8,19 @@ from typing import Any, ClassVar
 import mujoco
 import numpy as np
 
-from fes_mj.common.arrays import FloatArray
 from fes_mj.common.brief import Brief
 from fes_mj.common.checks import LEAST_POWER, Check, check
+from fes_mj.common.errors import UnstableError
 from fes_mj.common.provenance import versions
 from fes_mj.common.writing import csv_text
+from fes_mj.riding.differences import speed_difference, work_scale
 from fes_mj.riding.ride import Ride
 from fes_mj.riding.trace import Trace, ride as ride_by_equation
+from fes_mj.riding.verdict import NO_AGREEMENT, outside_known, sentence, verdict
 from fes_mj.simulation.appearance import Spec
 from fes_mj.simulation.road import RoadRun, ride_on_road
 from fes_mj.simulation.road_control import RoadControl, road_control
-from fes_mj.simulation.road_mjcf import TIMESTEP
-
-DISTANCES = 2000  # at which the two speeds are compared
+from fes_mj.simulation.road_step import ride_timestep
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -36,7 +36,7 @@ class RideCase(Brief):
     """
 
     ride: Ride
-    timestep: float = TIMESTEP
+    timestep: float | None = None
 
     @property
     def brief(self) -> str:
@@ -54,14 +54,25 @@ class RideCase(Brief):
         return road_control(self.ride, model)
 
     @cached_property
-    def simulation(self) -> RoadRun:
-        """By MuJoCo. Raises UnstableError if it breaks down."""
-        return ride_on_road(self.ride, self.timestep, edit=self.edit_model, control=self.control, record=self.record)
-
-    @cached_property
     def reference(self) -> Trace:
         """By the reduced equation of motion."""
         return ride_by_equation(self.ride)
+
+    @cached_property
+    def simulation(self) -> RoadRun:
+        """By MuJoCo, for as long as the reference rides. Raises UnstableError if it breaks down."""
+        return self.simulated(self.timestep or ride_timestep(self.reference))
+
+    def simulated(self, timestep: float) -> RoadRun:
+        """By MuJoCo with a time step in s."""
+        return ride_on_road(
+            self.ride,
+            timestep,
+            until=float(self.reference.time[-1]),
+            edit=self.edit_model,
+            control=self.control,
+            record=self.record,
+        )
 
     # What is concluded.
 
@@ -73,44 +84,71 @@ class RideCase(Brief):
     def checks(self) -> tuple[Check, ...]:
         """The comparison."""
         run, mine, other = self.simulation, self.simulation.trace, self.reference
-        least = LEAST_POWER * self.ride.duration
         turns_apart = 0.0 if mine.rides and other.rides else abs(mine.turns - other.turns)  # where they stop
         return (
             self.check("ride_verdict", turns_apart if mine.rides == other.rides else math.inf),
             self.check("ride_speed", speed_difference(mine, other)),
             self.check("ride_settled", relative(mine.mean_speed, other.mean_speed)),
             self.check("ride_power", self._power_difference()),
-            self.check("ride_energy", abs(run.lost) / max(float(np.ptp(mine.muscle_work)), least)),
+            self.check("ride_energy", abs(run.lost) / work_scale(mine)),
             self.check("loop_gap", run.loop_gap_max),
         )
 
     def _power_difference(self) -> float:
-        """Mean power of MuJoCo's muscles less what the reference's road takes and its motion gains, relative."""
+        """Mean power of MuJoCo's muscles less what the reference's road takes and its motion gains, per the largest."""
         delivered, taken = self.simulation.trace.muscle_power, self.reference.road_power
         gained = self.reference.gained_power
         if delivered is None or taken is None or gained is None:
             return 0.0 if delivered is taken is None else math.inf
-        return abs(delivered - taken - gained) / max(abs(delivered), LEAST_POWER)
+        return abs(delivered - taken - gained) / max(abs(delivered), abs(taken), abs(gained), LEAST_POWER)
 
     @property
     def agrees(self) -> bool:
         return all(check.ok for check in self.checks)
 
+    @cached_property
+    def uncertainty(self) -> dict[str, float]:
+        """Relative error of the speed (speed_difference) that the steps of each solver leave, by its name.
+
+        MuJoCo's from a run with twice the step, a third of whose difference is the error of second order (Richardson);
+        infinite if that breaks down. The reduced model's is the whole difference from half the steps.
+        """
+        try:
+            coarse = speed_difference(self.simulated(2 * self.simulation.timestep).trace, self.simulation.trace) / 3
+        except UnstableError:
+            coarse = math.inf
+        return {"mujoco": coarse, "reduced": speed_difference(self.reference, ride_by_equation(self.ride, 2))}
+
+    @property
+    def sentence(self) -> str:
+        """The verdict in words, with the speed if there is one."""
+        if not self.agrees:
+            return "Whether it rides, and how fast, is not known."
+        return sentence(self.simulation.trace)
+
     def summary(self) -> dict[str, Any]:
-        """The result as JSON names and units it."""
-        return self.simulation.trace.summary() | {
-            "agrees": self.agrees,
-            "checks": [check.as_json() for check in self.checks],
-            "reduced": {
-                key: value
-                for key, value in self.reference.summary().items()
-                if key in ("rides", "speed_kmh", "cadence_rpm", "speed_ripple", "distance_m", "stopped_at_s", "turns")
-            },
-            "energy_lost_J": self.simulation.lost,
-            "loop_gap_max_m": self.simulation.loop_gap_max,
-            "timestep_s": self.timestep,
-            "versions": versions("fes-mj", "mujoco", "numpy"),
+        """The result as JSON names and units it; none if the solvers do not agree."""
+        run, word = self.simulation, verdict(self.simulation.trace)
+        results = run.trace.summary() | {
+            "verdict": word.word,
+            "stopped_because": None if run.trace.rides else word.reason,
         }
+        results |= {"outside_known": outside_known(run.trace), "reduced": self.reference.summary()}
+        if not self.agrees:
+            results = dict.fromkeys(results) | {"verdict": NO_AGREEMENT}
+        return (
+            self.ride.summary()
+            | results
+            | {
+                "agrees": self.agrees,
+                "checks": [check.as_json() for check in self.checks],
+                "numerical_uncertainty": self.uncertainty,
+                "energy_lost_J": run.lost,
+                "loop_gap_max_m": run.loop_gap_max,
+                "timestep_s": run.timestep,
+                "versions": versions("fes-mj", "mujoco", "numpy"),
+            }
+        )
 
     def trace_csv(self) -> str:
         """MuJoCo's ride as CSV, a row a time step, with the reference's speed at the same time."""
@@ -135,22 +173,3 @@ def relative(one: float | None, other: float | None) -> float:
     if one is None or other is None:
         return 0.0 if one is other else math.inf
     return abs(one / other - 1)
-
-
-def speed_difference(one: Trace, other: Trace) -> float:
-    """Root mean square difference of the tricycle's speed at equal distances, per its root mean square.
-
-    Distances are those that both reach; speeds at equal times would differ by what little one is ahead.
-    """
-    reach = min(float(trace.distance.max()) for trace in (one, other))
-    at = np.linspace(0, reach, DISTANCES)
-    mine, theirs = (_speed_at(trace, at) for trace in (one, other))
-    scale = math.sqrt(float(np.mean(theirs**2)))
-    return math.sqrt(float(np.mean((mine - theirs) ** 2))) / scale if scale else 0.0
-
-
-def _speed_at(trace: Trace, distance: FloatArray) -> FloatArray:
-    """Speed when the tricycle first comes to these distances, m/s."""
-    farthest = np.maximum.accumulate(trace.distance)
-    first = np.concatenate([[True], np.diff(farthest) > 0])
-    return np.asarray(np.interp(distance, farthest[first], trace.speed[first]))

@@ -11,7 +11,6 @@ from typing import Any
 from fes_mj.common.checks import Check
 from fes_mj.common.console import number
 from fes_mj.common.text import typeset
-from fes_mj.common.units import KMH
 from fes_mj.common.writing import write_text
 from fes_mj.crosscheck.ride_case import RideCase
 from fes_mj.crosscheck.turn_case import Case
@@ -41,11 +40,8 @@ def ride(design: Design, moments: JointMoments, state: Path, *, transmission: st
     """As `fes_mj ride`, slope in percent, in the same form. Raises what RideCase raises."""
     hill = moments.at_speed(load_torque_velocity("hill"))
     case = RideCase(Ride(design, hill, Road(slope=slope / 100), transmission=transmission))
-    trace = case.simulation.trace
-    result = f"it stops after {trace.stopped_at:.1f} s" if trace.stopped_at is not None else "it rides"
-    if trace.mean_speed is not None:
-        result += f", {trace.mean_speed / KMH:.2f} km/h at the end"
-    return _checked("The two solvers", result, case.checks)
+    result = case.sentence.removesuffix(".")
+    return _checked("The two solvers", result[:1].lower() + result[1:], case.checks)
 
 
 def fit(design: Design, moments: JointMoments, state: Path) -> dict[str, Any]:

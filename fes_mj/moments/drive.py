@@ -22,7 +22,7 @@ POINTS = TABLE_SIZE  # crank angles of a table over a turn
 
 @dataclass(frozen=True, eq=False)
 class Drive:
-    """One turn of one leg over uniform crank angles, shape (POINTS,).
+    """One turn of one leg over uniform crank angles, shape (points,).
 
     command: N m, of each joint at rest: with a torque-velocity relation the moment that the muscle would have at rest.
     breaks: whether a joint turns round, or leaves the range of the moments, between a crank angle and the next.
@@ -33,14 +33,14 @@ class Drive:
     motion: kinematics.Motion
 
 
-def drive(design: Design, moments: JointMoments, lag: float = 0.0) -> Drive:
-    """Commands for a design. lag: time constant of the muscles' answer, s.
+def drive(design: Design, moments: JointMoments, lag: float = 0.0, points: int = POINTS) -> Drive:
+    """Commands for a design. lag: time constant of the muscles' answer, s. points: crank angles of the turn.
 
     With a lag the command is the one whose filtered answer, on the tricycle of the measurement at its cadence, is the
     map: u = m + lag * cadence * dm/da over that tricycle's crank angle a.
     """
     torque = torque_map(moments)
-    motion = kinematics.solve(design, np.linspace(0, 2 * np.pi, POINTS, endpoint=False))
+    motion = kinematics.solve(design, np.linspace(0, 2 * np.pi, points, endpoint=False))
     angle, rate = motion.joint_angle, motion.joint_rate
 
     def command(joint: str) -> FloatArray:

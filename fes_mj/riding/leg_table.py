@@ -1,11 +1,17 @@
-"""What the reduced equation of motion must know of both legs at each crank angle, in tables over a turn."""
+"""What the reduced equation of motion must know of both legs at each crank angle, in tables over a turn.
 
+Cells and steps are chosen beforehand, as fine as the linkage is sharp and its moments abrupt: where the crank turns
+evenly a step of Runge and Kutta is Simpson's rule, and how exact that is the table itself can tell.
+"""
+
+import math
 from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 
-from fes_mj.common.arrays import BoolArray, FloatArray
+from fes_mj.common.arrays import BoolArray, FloatArray, IntArray
+from fes_mj.common.errors import InputError
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.inertia import CrankInertia, crank_inertia
 from fes_mj.linkage.joints import JOINTS
@@ -13,13 +19,22 @@ from fes_mj.linkage.legs import TWO_LEGS, delayed
 from fes_mj.moments.drive import POINTS, drive
 from fes_mj.moments.joint_moments import JointMoments
 
+# Errors over a turn of the muscles' work, and of what inertia and recoil change, as parts of the work without sign and
+# of the largest inertia and recoil; those of all cells, or steps, are added up without their own signs.
+CELL_TOLERANCE, STEP_TOLERANCE = 1e-5, 1e-4
+LEAST_PUSH = 1e-3  # N m, of moments that are next to nothing
+MOST_CELLS = 64 * POINTS
+LONGEST_STEP = math.radians(2.0)
+# With a lag commands are given ahead of the crank angle, and their breaks lie anywhere in a step.
+LONGEST_WITH_LAG = math.radians(1.0)
+
 
 class LegTable(NamedTuple):
-    """Over uniform crank angles of a turn, the last axis, the first repeated at its end: POINTS + 1.
+    """Over uniform crank angles of a turn, the last axis, the first repeated at its end: cells + 1.
 
-    masses: of both legs together, each of shape (POINTS + 1,). joint_rate: per crank speed, and command: N m
-    (Drive.command), by muscle_response.MUSCLES, shape (4, POINTS + 1). ahead, behind: the next crank angles at which
-    the moments break, rad.
+    masses: of both legs together, each of shape (cells + 1,). joint_rate: per crank speed, and command: N m
+    (Drive.command), by muscle_response.MUSCLES, shape (4, cells + 1). ahead, behind: crank angles at which a step that
+    begins in the cell after a row ends at the latest, rad, shape (cells,).
     """
 
     masses: CrankInertia
@@ -30,32 +45,100 @@ class LegTable(NamedTuple):
 
 
 @lru_cache(maxsize=32)
-def leg_table(design: Design, moments: JointMoments, lag: float = 0.0) -> LegTable:
-    """The table of a design. lag: time constant of the muscles' answer, s."""
-    drives = {leg: drive(design, moments.of_leg(leg.prefix), lag) for leg in TWO_LEGS}
-    masses = [
-        sum(delayed(curve, leg.lag) for leg, curve in zip(drives, curves, strict=True))
-        for curves in zip(*(crank_inertia(own.motion) for own in drives.values()), strict=True)
-    ]
-    rates = [delayed(own.motion.joint_rate[joint], leg.lag) for leg, own in drives.items() for joint in JOINTS]
-    commands = [delayed(own.command[joint], leg.lag) for leg, own in drives.items() for joint in JOINTS]
+def leg_table(design: Design, moments: JointMoments, lag: float = 0.0, fineness: int = 1) -> LegTable:
+    """The table of a design. lag: time constant of the muscles' answer, s. fineness: divides cells and steps.
+
+    Raises InputError where not even MOST_CELLS are enough.
+    """
+    cells, legs = POINTS, _legs(design, moments, lag, POINTS)
+    while _cell_error(legs.curves) > CELL_TOLERANCE:
+        cells *= 2
+        if cells > MOST_CELLS:
+            raise InputError(
+                f"{design.name}: a ride needs more than {MOST_CELLS:,} crank angles a turn; keep the links farther "
+                "from their dead centres"
+            )
+        legs = _legs(design, moments, lag, cells)
+    longest = LONGEST_WITH_LAG if lag else LONGEST_STEP
+    there, back = _steps(legs, longest), _steps(legs.mirrored, longest)
+    if fineness > 1:
+        legs = _legs(design, moments, lag, fineness * cells)
+    rows, cell = np.arange(fineness * cells), 2 * np.pi / (fineness * cells)
+    ahead = rows + np.minimum(np.repeat(there, fineness), legs.room)
+    behind = rows + 1 - np.minimum(np.repeat(back, fineness), legs.mirrored.room)[::-1]
+    closed = CrankInertia(*map(_closed, legs.masses)), _closed(legs.joint_rate), _closed(legs.command)
+    return LegTable(*closed, cell * ahead, cell * behind)
+
+
+class _Legs(NamedTuple):
+    """Of both legs over uniform crank angles of a turn: fields of LegTable, and whether the moments break in each cell.
+
+    curves: what is integrated over the crank angle, in units of what the tolerances are parts of, shape (3, cells).
+    """
+
+    masses: CrankInertia
+    joint_rate: FloatArray
+    command: FloatArray
+    breaks: BoolArray
+    curves: FloatArray
+
+    @property
+    def mirrored(self) -> "_Legs":
+        """As a crank that turns backwards comes across them; curves and breaks only."""
+        return self._replace(breaks=self.breaks[::-1], curves=np.roll(self.curves[:, ::-1], 1, axis=1))
+
+    @property
+    def room(self) -> IntArray:
+        """Cells from each row on to the next end of one with a break."""
+        count, broken = len(self.breaks), np.flatnonzero(self.breaks)
+        ends = np.unique(np.concatenate([broken, broken + 1, broken + count, broken + count + 1]))
+        return np.asarray(ends[np.searchsorted(ends, np.arange(count), "right")] - np.arange(count))
+
+
+def _legs(design: Design, moments: JointMoments, lag: float, cells: int) -> _Legs:
+    drives = {leg: drive(design, moments.of_leg(leg.prefix), lag, cells) for leg in TWO_LEGS}
+    masses = CrankInertia(
+        *(
+            np.asarray(sum(delayed(curve, leg.lag) for leg, curve in zip(drives, curves, strict=True)))
+            for curves in zip(*(crank_inertia(own.motion) for own in drives.values()), strict=True)
+        )
+    )
+    rate = np.array([delayed(own.motion.joint_rate[joint], leg.lag) for leg, own in drives.items() for joint in JOINTS])
+    command = np.array([delayed(own.command[joint], leg.lag) for leg, own in drives.items() for joint in JOINTS])
     breaks = np.logical_or.reduce([delayed(own.breaks, leg.lag) for leg, own in drives.items()])
-    ahead, behind = map(_closed, _next_breaks(breaks))
-    return LegTable(CrankInertia(*map(_closed, masses)), _closed(rates), _closed(commands), ahead, behind)
+    push = (rate * command).sum(axis=0)
+    work = 2 * np.pi * max(float(np.abs(push).mean()), LEAST_PUSH)
+    inertia, recoil = masses.inertia_rate / masses.inertia.max(), masses.recoil_rate / np.abs(masses.recoil).max()
+    return _Legs(masses, rate, command, breaks, np.array([push / work, inertia, recoil]))
 
 
-def _closed(curve: object) -> FloatArray:
+def _cell_error(curves: FloatArray) -> float:
+    """Error of the integrals over a turn by straight lines between the rows: a third of what every other row adds."""
+    first, middle, last = curves[:, ::2], curves[:, 1::2], np.roll(curves[:, ::2], -1, axis=1)
+    return float(np.abs(first - 2 * middle + last).sum(axis=1).max() * np.pi / curves.shape[1] / 3)
+
+
+def _steps(legs: _Legs, longest: float) -> IntArray:
+    """Longest step forward from each row, in cells: Simpson's rule against the cells' straight lines."""
+    curves, count, room = legs.curves, len(legs.breaks), legs.room
+    cell, rows = 2 * np.pi / count, np.arange(count)
+    twice = np.concatenate([curves, curves, curves[:, :1]], axis=1)
+    integral = np.zeros(twice.shape)
+    np.cumsum((twice[:, :-1] + twice[:, 1:]) * (cell / 2), axis=1, out=integral[:, 1:])
+    steps, good, size = np.ones(count, int), np.ones(count, bool), 2
+    while size * cell <= longest:
+        ahead = np.minimum(size, room)
+        end, below, above = rows + ahead, rows + ahead // 2, rows + (ahead + 1) // 2
+        simpson = (twice[:, rows] + 2 * (twice[:, below] + twice[:, above]) + twice[:, end]) * (ahead * cell / 6)
+        error = np.abs(simpson - (integral[:, end] - integral[:, rows])).max(axis=0)
+        good &= error <= STEP_TOLERANCE * ahead / count
+        steps[good] = ahead[good]
+        size *= 2
+    return steps
+
+
+def _closed(turn: FloatArray) -> FloatArray:
     """A curve over a turn with its first value repeated at its end."""
-    turn = np.asarray(curve, float)
     closed = np.concatenate([turn, turn[..., :1]], axis=-1)
     closed.setflags(write=False)
     return closed
-
-
-def _next_breaks(breaks: BoolArray) -> tuple[FloatArray, FloatArray]:
-    """Crank angles of the first break beyond the cells beside each row, ahead and behind, rad."""
-    cells = np.flatnonzero(breaks)
-    around = np.concatenate([cells - POINTS, cells, cells + POINTS])
-    rows, cell = np.arange(POINTS), 2 * np.pi / POINTS
-    ahead, behind = np.searchsorted(around, rows, "right"), np.searchsorted(around, rows, "left") - 1
-    return cell * (around[ahead] + 0.5), cell * (around[behind] + 0.5)

@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass, field, replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -126,6 +126,21 @@ class Ride(Brief):
     def table(self) -> LegTable:
         """Masses and commands of both legs over the crank angle."""
         return leg_table(self.design, self.moments, self.lag)
+
+    def summary(self) -> dict[str, Any]:
+        """What is ridden as JSON names and units it."""
+        relation = self.moments.torque_velocity
+        return {
+            "design": self.design.name,
+            "group": self.moments.name,
+            "torque_velocity": relation.name if relation else None,
+            "transmission": self.transmission,
+            "slope_percent": 100 * self.road.slope,
+            "lag_s": self.lag,
+            "launch_kmh": self.launch / KMH,
+            "start_deg": math.degrees(self.start),
+            "duration_s": self.duration,
+        }
 
 
 def balancing_slope(ride: Ride, speed: float = TRICYCLE_SPEED) -> float:

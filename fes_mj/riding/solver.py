@@ -17,25 +17,29 @@ from typing import Any, NamedTuple
 from fes_mj.common.machine_code import kept_machine_code, machine_code, sources
 from fes_mj.linkage.inertia import CrankInertia
 from fes_mj.moments.muscle_response import MUSCLES, Response, between, delivered, lead, place
-from fes_mj.riding.leg_table import LegTable
+from fes_mj.riding.leg_table import LegTable, leg_table
 from fes_mj.riding.ride import Load, Ride
-from fes_mj.riding.trace import Steps
 
 TOUCH = 1e-12  # m/s: rounding, by which a crank that has just caught up may be too fast or too slow
 STANDING = 1e-9  # rad/s: a crank that is slower takes no step by its angle
-HALVINGS = 30  # of a step, to find an event in it
+NEAR = 1e-9  # rad: rounding, by which a step may miss the end of a cell
+LONGEST, LONGEST_FREE = 0.016, math.radians(1.0)  # s, of a step: where the crank is slow; rad: where it runs free
+HALVINGS = 14  # of a step, to find an event in it
 COUNT = len(MUSCLES)
 
 
 class System(NamedTuple):
-    """All that the equation of motion knows of a ride. travel: c, m/rad."""
+    """All that the equation of motion knows of a ride. travel: c, m/rad. longest: step, s, and free: of a crank that
+    runs free, rad.
+    """
 
     table: LegTable
     response: Response
     load: Load
     fixed: bool
     travel: float
-    steps: Steps
+    longest: float
+    free: float
 
 
 class State(NamedTuple):
@@ -61,9 +65,11 @@ class Mode(NamedTuple):
     direction: int
 
 
-def system(ride: Ride, steps: Steps) -> System:
-    """The equation of motion of a ride."""
-    return System(ride.table, Response.of(ride.moments, ride.lag), ride.load, ride.fixed, ride.travel, steps)
+def system(ride: Ride, fineness: int) -> System:
+    """The equation of motion of a ride. fineness: divides steps and the table's cells."""
+    table = leg_table(ride.design, ride.moments, ride.lag, fineness)
+    response = Response.of(ride.moments, ride.lag)
+    return System(table, response, ride.load, ride.fixed, ride.travel, LONGEST / fineness, LONGEST_FREE / fineness)
 
 
 @machine_code
@@ -82,10 +88,9 @@ def moved(state: State, rates: State, time: float) -> State:
 
 
 @machine_code
-def commands(system: System, angle: float, speed: float) -> tuple[float, float, float, float]:
-    """Moments at rest that MUSCLES are commanded at a crank angle and speed, N m."""
+def commands(system: System, row: int, part: float) -> tuple[float, float, float, float]:
+    """Moments at rest that MUSCLES are commanded at a place of the table, N m."""
     curves = system.table.command
-    row, part = place(angle + lead(system.response, speed), len(curves[0]) - 1)
     return (
         between(curves[0], row, part),
         between(curves[1], row, part),
@@ -95,22 +100,30 @@ def commands(system: System, angle: float, speed: float) -> tuple[float, float, 
 
 
 @machine_code
+def ahead(system: System, angle: float, speed: float) -> tuple[int, float]:
+    """The place of the table whose commands are given at a crank angle and speed."""
+    return place(angle + lead(system.response, speed), len(system.table.ahead))
+
+
+@machine_code
 def rates_of(system: System, state: State, mode: Mode) -> tuple[State, float]:
     """Rates of a state, and T where the transmission is engaged (N m), elsewhere the wheel's push (N)."""
     table, response, load = system.table, system.response, system.load
     masses, speed, travelling = table.masses, state.crank_speed, state.speed
-    row, part = place(state.crank_angle, len(table.ahead) - 1)
+    row, part = place(state.crank_angle, len(table.ahead))
     inertia, recoil = between(masses.inertia, row, part), between(masses.recoil, row, part)
-    command = commands(system, state.crank_angle, speed)
-    lag, moments, answering = response.lag, command, (0.0, 0.0, 0.0, 0.0)
+    lag, answering = response.lag, (0.0, 0.0, 0.0, 0.0)
     if lag > 0:
         moments = now = state.answers
+        command = commands(system, *ahead(system, state.crank_angle, speed))
         answering = (
             (command[0] - now[0]) / lag,
             (command[1] - now[1]) / lag,
             (command[2] - now[2]) / lag,
             (command[3] - now[3]) / lag,
         )
+    else:
+        moments = commands(system, row, part)
     drive = 0.0
     for muscle in range(COUNT):
         rate = between(table.joint_rate[muscle], row, part)
@@ -183,30 +196,29 @@ def mode_of(system: System, state: State) -> Mode:
 
 
 @machine_code
-def stepped(system: System, start: State, mode: Mode, time: float) -> tuple[State, float]:
-    """A step of Runge and Kutta: the state at its end, and what rates_of says of T or the push there."""
-    first, _ = rates_of(system, start, mode)
+def stepped(system: System, start: State, first: State, mode: Mode, time: float) -> tuple[State, State, float]:
+    """A step of Runge and Kutta from a state with these rates: the state at its end, and what rates_of says there."""
     second, _ = rates_of(system, moved(start, first, time / 2), mode)
     third, _ = rates_of(system, moved(start, second, time / 2), mode)
     fourth, _ = rates_of(system, moved(start, third, time), mode)
     middle = moved(moved(moved(start, first, time / 6), second, time / 3), third, time / 3)
     end = moved(middle, fourth, time / 6)
-    _, push = rates_of(system, end, mode)
-    return end, push
+    rates, push = rates_of(system, end, mode)
+    return end, rates, push
 
 
 @machine_code
-def to_event(system: System, start: State, mode: Mode, longest: float) -> tuple[State, float]:
+def to_event(system: System, start: State, first: State, mode: Mode, longest: float) -> tuple[State, float]:
     """The state at which a mode is over within a step, and the time until then, s."""
     earliest, latest = 0.0, longest
     for _ in range(HALVINGS):
         time = (earliest + latest) / 2
-        end, push = stepped(system, start, mode, time)
+        end, _, push = stepped(system, start, first, mode, time)
         if ended(system, end, mode, push):
             latest = time
         else:
             earliest = time
-    end, _ = stepped(system, start, mode, latest)
+    end, _, _ = stepped(system, start, first, mode, latest)
     crank_speed, speed = end.crank_speed, end.speed
     if mode.direction * speed < 0:
         speed = 0.0
@@ -219,13 +231,16 @@ def to_event(system: System, start: State, mode: Mode, longest: float) -> tuple[
 
 
 @machine_code
-def longest_step(system: System, state: State, mode: Mode) -> float:
-    """Time of the next step, s: to the next break of the moments, but not across it."""
-    table, steps = system.table, system.steps
-    angle, speed = state.crank_angle % (2 * math.pi), state.crank_speed
-    row, _ = place(angle, len(table.ahead) - 1)
-    reach: float = table.ahead[row] - angle if speed > 0 else angle - table.behind[row]
-    return min(steps.time, min(steps.engaged if mode.engaged else steps.free, reach) / max(abs(speed), STANDING))
+def longest_step(system: System, state: State, rates: State, mode: Mode) -> float:
+    """Time of the next step, s: to where the table ends it, at the acceleration at its begin."""
+    table, angle, speed = system.table, state.crank_angle % (2 * math.pi), state.crank_speed
+    row, _ = place(angle, len(table.ahead))
+    reach: float = max(table.ahead[row] - angle if speed > 0 else angle - table.behind[row], NEAR)
+    if not mode.engaged:
+        reach = min(reach, system.free)
+    change = rates.crank_speed if speed > 0 else -rates.crank_speed
+    fastest = abs(speed) + math.sqrt(max(speed * speed + 2 * change * reach, 0.0))
+    return min(system.longest, 2 * reach / max(fastest, STANDING))
 
 
 @kept_machine_code
@@ -236,7 +251,7 @@ def advance(
     clock: float,
     until: float,
     rows: Any,
-    version: int = sources(CrankInertia, LegTable, Load, Steps),
+    version: int = sources(CrankInertia, LegTable, Load),
 ) -> tuple[int, State, Mode, float]:
     """Fill rows with SAMPLE at the start of each step, and at last at the end of the ride.
 
@@ -245,8 +260,9 @@ def advance(
     """
     if clock == 0:
         begun = (state.crank_angle, state.crank_speed, state.distance, state.speed, state.muscle_work, state.road_work)
-        state = State(*begun, commands(system, state.crank_angle, state.crank_speed))
+        state = State(*begun, commands(system, *ahead(system, state.crank_angle, state.crank_speed)))
         mode = mode_of(system, state)
+    rates, _ = rates_of(system, state, mode)
     count = 0
     while count < len(rows):
         rows[count, 0], rows[count, 1] = clock, not mode.engaged
@@ -255,11 +271,12 @@ def advance(
         count += 1
         if clock >= until:
             break
-        time = min(longest_step(system, state, mode), until - clock)
-        end, push = stepped(system, state, mode, time)
+        time = min(longest_step(system, state, rates, mode), until - clock)
+        end, onward, push = stepped(system, state, rates, mode, time)
         if ended(system, end, mode, push):
-            end, time = to_event(system, state, mode, time)
+            end, time = to_event(system, state, rates, mode, time)
             mode = mode_of(system, end)
-        state = end
+            onward, _ = rates_of(system, end, mode)
+        state, rates = end, onward
         clock += time
     return count, state, mode, clock

@@ -114,6 +114,7 @@ def ride_on_road(
     ride: Ride,
     timestep: float = TIMESTEP,
     *,
+    until: float | None = None,
     edit: Callable[[Spec], None] = lambda _: None,
     control: MakeControl | None = None,
     make_loop: Callable[[MakeControl], Loop] = road_loop,
@@ -121,9 +122,9 @@ def ride_on_road(
 ) -> RoadRun:
     """Ride in MuJoCo.
 
-    edit: changes the model before it is compiled. control: another than road_control. make_loop: another loop than
-    road_loop. record: what is made of the sensors. Raises InputError as trace.ride, UnstableError if the integration
-    breaks down.
+    until: s, if not to the end of the ride. edit: changes the model before it is compiled. control: another than
+    road_control. make_loop: another loop than road_loop. record: what is made of the sensors. Raises InputError as
+    trace.ride, UnstableError if the integration breaks down.
     """
     for leg in TWO_LEGS:
         turning_in_range(ride.design, ride.moments.of_leg(leg.prefix).measured_on)
@@ -138,7 +139,7 @@ def ride_on_road(
         probe = Sensors(model, run_loop(model, loop, PRE_ROLL, pre_roll=0).sensors)
         gain = {name: float(np.diff(probe[f"{name}_speed"][PRE_ROLL // 2 : -1]).mean()) for name in (ROAD, "crank")}
         _start_half_a_step_early(model, ride, {name: change / timestep for name, change in gain.items()})
-    run = run_loop(model, loop, round(ride.duration / timestep) + 1, pre_roll=0)
+    run = run_loop(model, loop, round((until or ride.duration) / timestep) + 1, pre_roll=0)
     return record(ride, timestep, model, start_energy, run)
 
 

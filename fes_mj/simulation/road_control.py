@@ -20,7 +20,7 @@ class RoadControl(NamedTuple):
     """What the control knows of a ride and its model; arrays by MUSCLES.
 
     travel: m/rad. road, crank, crank_speed: addresses of the joints' positions and of a speed; so joint_speed and, of
-    the motors, actuator. leg_lag: rad. command: N m over a turn of the own leg's crank, shape (4, POINTS + 1). kept:
+    the motors, actuator. leg_lag: rad. command: N m over a turn of the own leg's crank, shape (4, cells + 1). kept:
     part of the distance to its command that a muscle's answer keeps in a step.
     """
 
@@ -50,7 +50,8 @@ class Memory(NamedTuple):
 
 def road_control(ride: Ride, model: mujoco.MjModel) -> RoadControl:
     """The control of a ride in its model."""
-    drives = {leg: drive(ride.design, ride.moments.of_leg(leg.prefix), ride.lag) for leg in TWO_LEGS}
+    cells = len(ride.table.ahead)
+    drives = {leg: drive(ride.design, ride.moments.of_leg(leg.prefix), ride.lag, cells) for leg in TWO_LEGS}
     commands = [drives[leg].command[joint] for leg, joint in MUSCLES]
     actuators, _, speeds = np.array([drive_addresses(model, leg.prefix + joint) for leg, joint in MUSCLES]).T.copy()
     crank = model.joint("crank")

@@ -123,7 +123,7 @@ def run_loop(model: mujoco.MjModel, loop: Loop, steps: int, pre_roll: int = PRE_
         if any(warning.number for warning in data.warning):
             raise UnstableError(
                 f"{model.names[: model.names.index(0)].decode()}: the simulation became unstable "
-                f"with a time step of {1e3 * model.opt.timestep:.3g} ms; give a smaller --timestep"
+                f"with a time step of {1e3 * model.opt.timestep:.3g} ms; a shorter one may do"
             )
         end = energy(model, data, model.opt.timestep / 2)
         mujoco.mj_forward(model, data)

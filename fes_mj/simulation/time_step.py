@@ -33,6 +33,13 @@ def predicted_errors(design: Design, cadence: float, step: float, angles: FloatA
     """Errors of the simulation of one leg with `step` (rad of the crank) between two samples, without joint moments.
 
     cadence: rad/s. angles: of the crank, uniform over a turn, at which they are evaluated, rad.
+    """
+    power, gap = local_errors(design, cadence, step, angles)
+    return Errors(float(np.sqrt(np.mean(power**2))), abs(float(power.mean())), float(gap.max()))
+
+
+def local_errors(design: Design, cadence: float, step: float, angles: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Errors of crank power (W) and loop gap (m) at each of the crank angles; arguments as of predicted_errors.
 
     The scheme puts every link where its loops close up to the gap g = step^2/2 * (difference of sum arm * turning^2
     along the two chains), takes speeds and accelerations as differences of such poses and balances the forces there.
@@ -54,15 +61,14 @@ def predicted_errors(design: Design, cadence: float, step: float, angles: FloatA
             second[body] * now.rates[body] - motion.rotation[body].second * motion.rotation[body].first
         )
         power = power - cadence * (inertia.mass * (force - exact).real + inertia.moment * couple)
-    error = np.asarray(power)
-    return Errors(float(np.sqrt(np.mean(error**2))), abs(float(error.mean())), now.gap)
+    return np.asarray(power), now.gap
 
 
 class _Pose(NamedTuple):
     motion: kinematics.Motion  # exact
     links: Mapping[str, ComplexArray]  # origin to tip, with the gaps, m
     rates: Mapping[str, FloatArray]  # rate of each link per crank angle, with the gaps
-    gap: float  # largest, m
+    gap: FloatArray  # m
 
 
 # Bodies between the frame and a body's own points: the tree that the loops close.
@@ -99,7 +105,7 @@ def _pose(design: Design, crank_angle: FloatArray, step: float) -> _Pose:
             for chain in ((carrier, exact, offset), (dyad[1], exact, 1.0))
         ]
         gap = step**2 / 2 * (pull[0] - pull[1])
-        gaps.append(float(np.abs(gap).max()))
+        gaps.append(np.abs(gap))
         arms = _arms(carrier, links, offset)
         tip = end + sum(arm for _, arm in arms) + gap - start
         velocity = sum(1j * arm * rates[link] for link, arm in arms)
@@ -118,7 +124,7 @@ def _pose(design: Design, crank_angle: FloatArray, step: float) -> _Pose:
         carrier = linkage.architecture.pedal_body
         base = linkage.crank_centre if carrier == "crank" else linkage.ground
         close(("thigh", "shank"), carrier, linkage.pedal_offset, 0j, base)
-    return _Pose(motion, links, rates, float(np.max(gaps)))
+    return _Pose(motion, links, rates, np.max(gaps, axis=0))
 
 
 # A predicted error may take up this share of its limit. The other half is for the joint moments, which the prediction

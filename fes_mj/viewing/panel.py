@@ -16,6 +16,7 @@ from fes_mj.common.units import KMH, RPM
 from fes_mj.crosscheck.ride_case import RideCase
 from fes_mj.crosscheck.turn_case import Case
 from fes_mj.linkage.design import Design
+from fes_mj.riding.verdict import verdict as what_became
 from fes_mj.viewing.charts import any_letters, plot_power
 
 _SMOOTH = 0.02  # s over which a ride's power is drawn
@@ -131,8 +132,7 @@ def _draw_ride(figure: Figure, case: RideCase, end: float) -> list[Axes]:
     ride, trace = case.ride, case.simulation.trace
     road = f"joint moments {ride.moments.name.upper()}, {ride.transmission}, {100 * ride.road.slope:.3g} % slope"
     write_title(figure, ride.design, road)
-    speed_text = f"rides, {(trace.mean_speed or 0) / KMH:.1f} km/h at the end"
-    agreement = f"the two solvers {'agree' if case.agrees else 'DO NOT agree'}"
-    result = speed_text if trace.rides else f"stops after {trace.stopped_at:.1f} s"
-    write_verdict(figure, f"{result}; {agreement}", case.agrees)
+    at_end = "" if trace.mean_speed is None else f", {trace.mean_speed / KMH:.1f} km/h at the end"
+    result = f"{what_became(trace).word.replace('-', ' ')}{at_end}; the two solvers agree"
+    write_verdict(figure, result if case.agrees else "the two solvers DO NOT agree", case.agrees)
     return [speed, power]

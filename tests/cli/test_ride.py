@@ -11,7 +11,7 @@ from tests.cli.conftest import answer, names, result
 KEYS = {
     "design", "group", "transmission", "slope_percent", "duration_s", "rides", "speed_kmh", "cadence_rpm",
     "speed_ripple", "distance_m", "freewheel_share", "stopped_at_s", "power_muscle_W", "power_road_W", "agrees",
-    "checks",
+    "checks", "verdict", "stopped_because", "numerical_uncertainty",
 }  # fmt: skip
 
 

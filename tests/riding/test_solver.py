@@ -17,7 +17,7 @@ from fes_mj.moments.torque_map import torque_map
 from fes_mj.moments.torque_velocity import load_torque_velocity
 from fes_mj.riding.leg_table import LegTable, leg_table
 from fes_mj.riding.ride import Ride, Road, balancing_slope, steady_ripple
-from fes_mj.riding.trace import DEFAULT_STEPS, Steps, ride as solved
+from fes_mj.riding.trace import ride as solved
 from fes_mj.statics.equilibrium import crank_moment
 
 NOTHING = Road(rolling_resistance=0.0, drag_area=0.0)
@@ -40,7 +40,7 @@ def no_moments() -> fes_mj.JointMoments:
 def test_the_table_is_the_inverse_dynamics(design: fes_mj.Design, no_moments: fes_mj.JointMoments) -> None:
     """At constant crank speed the crank takes -(dI/da w^2 / 2 + g dy/da), which inverse dynamics finds by loads."""
     masses, speed = leg_table(design, no_moments).masses, 9.0
-    angle = np.linspace(0, 2 * np.pi, POINTS, endpoint=False)
+    angle = np.linspace(0, 2 * np.pi, len(masses.inertia) - 1, endpoint=False)
     exact = sum(
         crank_moment(kinematics.solve(design, angle - leg.lag), torque_map(no_moments), speed) for leg in TWO_LEGS
     )
@@ -50,7 +50,9 @@ def test_the_table_is_the_inverse_dynamics(design: fes_mj.Design, no_moments: fe
 
 def test_rates_of_the_table_are_derivatives(design: fes_mj.Design, no_moments: fes_mj.JointMoments) -> None:
     """Fourier derivatives of I and X; the series is as good as exact but for the sharpest linkages."""
-    masses, frequency = leg_table(design, no_moments).masses, 1j * np.fft.fftfreq(POINTS, 1 / POINTS)
+    masses = leg_table(design, no_moments).masses
+    cells = len(masses.inertia) - 1
+    frequency = 1j * np.fft.fftfreq(cells, 1 / cells)
     for curve, rate in ((masses.inertia, masses.inertia_rate), (masses.recoil, masses.recoil_rate)):
         derivative = np.fft.ifft(frequency * np.fft.fft(curve[:-1])).real
         assert np.abs(derivative - rate[:-1]).max() < 1e-8 * np.abs(rate).max()
@@ -63,13 +65,14 @@ def test_energy_is_conserved_where_nothing_takes_it(transmission: str, no_moment
     ride = Ride(design, no_moments, replace(NOTHING, slope=0.01), transmission, duration=4.0)
     trace = solved(ride)
     masses, load = ride.table.masses, ride.load
-    at = trace.crank_angle % (2 * np.pi) * POINTS / (2 * np.pi)
-    inertia, recoil = (np.interp(at, np.arange(POINTS + 1), curve) for curve in (masses.inertia, masses.recoil))
+    cells = len(masses.inertia) - 1
+    at = trace.crank_angle % (2 * np.pi) * cells / (2 * np.pi)
+    inertia, recoil = (np.interp(at, np.arange(cells + 1), curve) for curve in (masses.inertia, masses.recoil))
     kinetic = inertia * trace.crank_speed**2 / 2 - recoil * trace.crank_speed * trace.speed
     kinetic += load.inertia * trace.speed**2 / 2
     rise = GRAVITY * (math.cos(ride.road.angle) * masses.height_rate - math.sin(ride.road.angle) * masses.recoil)
-    height = np.concatenate([[0], np.cumsum((rise[1:] + rise[:-1]) / 2)]) * 2 * np.pi / POINTS
-    energy = kinetic + np.interp(at, np.arange(POINTS + 1), height) + load.climb * trace.distance
+    height = np.concatenate([[0], np.cumsum((rise[1:] + rise[:-1]) / 2)]) * 2 * np.pi / cells
+    energy = kinetic + np.interp(at, np.arange(cells + 1), height) + load.climb * trace.distance
     assert np.ptp(energy) < 2e-4 * kinetic[0]
     assert np.ptp(kinetic) > 0.1 * kinetic[0]
 
@@ -104,7 +107,7 @@ def test_on_and_off_the_freewheel_at_half_the_step() -> None:
     ride = Ride(fes_mj.load_design("d2"), moments, duration=6.0)
     trace = solved(ride)
     assert 0.3 < trace.coasting_share < 0.95
-    finer = solved(ride, Steps(*(step / 2 for step in DEFAULT_STEPS)))
+    finer = solved(ride, 2)
     assert trace.mean_speed == pytest.approx(finer.mean_speed, rel=1e-4)
 
 

@@ -34,7 +34,8 @@ def test_mass_and_recoil_are_those_of_the_equation_of_motion(design: fes_mj.Desi
     model = build_road_mjcf(ride).compile()
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, 0)
-    masses, turn = ride.table.masses, np.linspace(0, 2 * np.pi, 3601)
+    masses = ride.table.masses
+    turn = np.linspace(0, 2 * np.pi, len(masses.inertia))
     inertia, recoil = (np.interp(0.7, turn, curve) for curve in (masses.inertia, masses.recoil))
     crank = ride.launch / ride.travel
     for speed in (0.0, ride.launch):

@@ -1,0 +1,63 @@
+"""The time step of a ride in MuJoCo, chosen beforehand from the linkage and the speeds that the ride reaches."""
+
+import math
+
+import numpy as np
+
+from fes_mj.common.arrays import FloatArray
+from fes_mj.common.checks import definitions
+from fes_mj.common.errors import InputError
+from fes_mj.linkage.legs import TWO_LEGS
+from fes_mj.riding.differences import sensitivity, work_scale
+from fes_mj.riding.trace import Trace
+from fes_mj.simulation.road_mjcf import TIMESTEP
+from fes_mj.simulation.time_step import FINE_TURN, SHARE, TRIAL, local_errors
+
+MOST_STEPS = 2_000_000  # with their records two thirds of a gigabyte and half a minute
+
+
+def ride_timestep(trace: Trace) -> float:
+    """Longest time step that keeps the predicted errors of a ride within SHARE of their limits, s; TIMESTEP at most.
+
+    trace: the ride by the reduced equation of motion, which says how fast the crank is at each angle. Errors are of
+    second order in the step: the loop gap, and the work that the scheme loses, which may neither be seen by itself nor
+    in the speed. Raises InputError where the ride would take more than MOST_STEPS.
+    """
+    limits = definitions()
+    lost, gap = predicted_losses(trace, TIMESTEP)
+    shares = (
+        gap / limits["loop_gap"].limit,
+        lost / limits["ride_energy"].limit,
+        lost * sensitivity(trace) / limits["ride_speed"].limit,
+    )
+    step = TIMESTEP / math.sqrt(max(1.0, *(share / SHARE for share in shares)))
+    needed = float(trace.time[-1]) / step
+    if not needed <= MOST_STEPS:
+        size = f"{needed:,.0f}" if math.isfinite(needed) else "endlessly many"
+        raise InputError(
+            f"{trace.ride.name}: the ride needs {size} time steps, more than {MOST_STEPS:,}; give a shorter "
+            "--duration, or keep the links farther from their dead centres"
+        )
+    return step
+
+
+def predicted_losses(trace: Trace, timestep: float) -> tuple[float, float]:
+    """Work that the scheme loses over a ride, per its work_scale, and the largest loop gap, m; timestep: s.
+
+    At a crank speed w the error of the power is of w^5 by masses and of w^3 by weights (local_errors).
+    """
+    crank_speed = np.abs(trace.crank_speed)
+    by_weight, gap = local_errors(trace.ride.design, 1.0, TRIAL, FINE_TURN)
+    twice, _ = local_errors(trace.ride.design, 2.0, TRIAL, FINE_TURN)
+    by_mass = (twice - 2 * by_weight) / 6
+    by_weight = by_weight - by_mass
+    steps = (crank_speed * timestep / TRIAL) ** 2
+    power, gaps = np.zeros_like(steps), []
+    for leg in TWO_LEGS:
+
+        def passed(curve: FloatArray, lag: float = leg.lag) -> FloatArray:
+            return np.asarray(np.interp(trace.crank_angle - lag, FINE_TURN, curve, period=2 * np.pi))
+
+        power += steps * (passed(by_mass) * crank_speed**3 + passed(by_weight) * crank_speed)
+        gaps.append(float((passed(gap) * steps).max()))
+    return abs(float(np.trapezoid(power, trace.time))) / work_scale(trace), max(gaps)
