@@ -11,7 +11,7 @@ from fes_mj.explore.answers import Answers
 from fes_mj.explore.server import Server
 
 PICTURE = Path(__file__).parents[1] / "docs" / "images" / "explore.png"
-SIZE = {"width": 1400, "height": 900}
+SIZE = {"width": 1280, "height": 800}
 CRANK = 15.0  # cm instead of D1's 16.1, so that there is a difference to see
 ANGLE = 215  # deg, at which leg and linkage do not hide each other
 

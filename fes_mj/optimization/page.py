@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from fes_mj.common.arrays import FloatArray
-from fes_mj.common.style import COLOURS, INK, SERIES
+from fes_mj.common.style import COLOURS, INK, MOMENTS, SERIES
 from fes_mj.linkage.design_file import design_toml
 from fes_mj.moments.joint_moments import GROUPS
 from fes_mj.optimization.optimize import Optimum
@@ -72,7 +72,7 @@ def _front_figures(front: Front, chosen: FloatArray) -> list[str]:
             return [page_svg(figure, axes)]
         figure.colorbar(dots, label=FLUCTUATION)
         over, (below,) = page_axes()
-        for group, power, colour in zip(GROUPS, front.power.T, SERIES, strict=False):
+        for group, power, colour in zip(GROUPS, front.power.T, MOMENTS, strict=False):
             below.plot(smooth, power, ".", color=colour, label=group)
             below.plot(smooth[best], power[best], **star)
         below.set(xlabel=f"{FLUCTUATION}, two legs, {GROUPS[0]}", ylabel="mean crank power, W")

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from fes_mj.common.style import COLOURS, CRANK_LABEL, FAINT, LINKS, X_LABEL
+from fes_mj.common.style import COLOURS, CRANK_LABEL, FAINT, LINKS, MOMENTS, X_LABEL
 from fes_mj.common.units import KMH
 from fes_mj.crosscheck.turn_case import Case
 from fes_mj.linkage.joints import JOINTS
@@ -169,7 +169,7 @@ def riding(runs: Runs) -> Figure:
             values = np.array([values_of(ride) for ride in rides], float)  # None becomes NaN
             places = np.arange(len(rides)) + 0.18 * (row - 1.5)
             best, drawn = values[:, 0], values[:, 1:]
-            look = {"color": COLOURS["knee" if group == GROUPS[0] else "hip"], "ms": 5}
+            look = {"color": MOMENTS[GROUPS.index(group)], "ms": 5}
             face = look["color"] if transmission == "fixed" else "white"
             ax.plot(np.repeat(places, drawn.shape[1]), drawn.ravel(), ".", color=look["color"], ms=2, alpha=0.5)
             ax.plot(places, best, "o", markerfacecolor=face, label=f"{group.upper()}, {transmission}", **look)

@@ -4,11 +4,11 @@ from itertools import combinations
 
 import numpy as np
 
-from fes_mj.common.style import COLOURS, LINKS, SERIES, hex_colour, rgb
+from fes_mj.common.style import COLOURS, LINKS, MOMENTS, SERIES, hex_colour, rgb
 
 
 def test_colours_can_be_told_apart() -> None:
-    for palette in (COLOURS.values(), LINKS.values(), SERIES):
+    for palette in ((*COLOURS.values(), *MOMENTS), LINKS.values(), SERIES):
         for one, other in combinations(palette, 2):
             assert np.linalg.norm(np.subtract(rgb(one), rgb(other))) > 0.08, (one, other)
 
