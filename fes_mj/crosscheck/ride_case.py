@@ -10,7 +10,6 @@ import numpy as np
 
 from fes_mj.common.brief import Brief
 from fes_mj.common.checks import LEAST_POWER, Check, check
-from fes_mj.common.errors import UnstableError
 from fes_mj.common.provenance import versions
 from fes_mj.common.writing import csv_text
 from fes_mj.riding.differences import speed_difference, work_scale
@@ -20,7 +19,7 @@ from fes_mj.riding.verdict import NO_AGREEMENT, outside_known, sentence, verdict
 from fes_mj.simulation.appearance import Spec
 from fes_mj.simulation.road import RoadRun, ride_on_road
 from fes_mj.simulation.road_control import RoadControl, road_control
-from fes_mj.simulation.road_step import ride_timestep
+from fes_mj.simulation.road_step import ride_timestep, tried_timestep
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -59,9 +58,17 @@ class RideCase(Brief):
         return ride_by_equation(self.ride)
 
     @cached_property
+    def trial(self) -> RoadRun:
+        """By MuJoCo with a step twice as long, which says whether the closed form has chosen it well."""
+        return self.simulated(2 * (self.timestep or ride_timestep(self.reference)))
+
+    @cached_property
     def simulation(self) -> RoadRun:
         """By MuJoCo, for as long as the reference rides. Raises UnstableError if it breaks down."""
-        return self.simulated(self.timestep or ride_timestep(self.reference))
+        trial, step = self.trial, self.timestep
+        return self.simulated(
+            step or tried_timestep(self.reference, trial.timestep, trial.lost / work_scale(trial.trace))
+        )
 
     def simulated(self, timestep: float) -> RoadRun:
         """By MuJoCo with a time step in s."""
@@ -110,14 +117,15 @@ class RideCase(Brief):
     def uncertainty(self) -> dict[str, float]:
         """Relative error of the speed (speed_difference) that the steps of each solver leave, by its name.
 
-        MuJoCo's from a run with twice the step, a third of whose difference is the error of second order (Richardson);
-        infinite if that breaks down. The reduced model's is the whole difference from half the steps.
+        MuJoCo's by Richardson's extrapolation from the trial run, at second order. The reduced model's is the whole
+        difference from half its steps.
         """
-        try:
-            coarse = speed_difference(self.simulated(2 * self.simulation.timestep).trace, self.simulation.trace) / 3
-        except UnstableError:
-            coarse = math.inf
-        return {"mujoco": coarse, "reduced": speed_difference(self.reference, ride_by_equation(self.ride, 2))}
+        run, trial = self.simulation, self.trial
+        coarser = (trial.timestep / run.timestep) ** 2 - 1
+        return {
+            "mujoco": speed_difference(trial.trace, run.trace) / coarser,
+            "reduced": speed_difference(self.reference, ride_by_equation(self.ride, 2)),
+        }
 
     @property
     def sentence(self) -> str:

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -40,6 +41,7 @@ def work_scale(trace: Trace) -> float:
     return max(float(np.ptp(trace.muscle_work)), LEAST_POWER * float(trace.time[-1]))
 
 
+@lru_cache(maxsize=1)
 def sensitivity(trace: Trace) -> float:
     """Relative change of a ride's speed (speed_difference) per part of its work that something takes from it.
 

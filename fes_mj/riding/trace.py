@@ -84,8 +84,8 @@ class Trace(Brief):
 
     @cached_property
     def whole_turns(self) -> int:
-        """Turns at the end over which a ride is described; 0 if it stopped or made none."""
-        return min(LAST_TURNS, math.floor(self.turns)) if self.rides else 0
+        """Turns at the end over which a ride is described; 0 if it stopped, made none or turned backwards."""
+        return min(LAST_TURNS, max(0, math.floor(self.turns))) if self.rides else 0
 
     @cached_property
     def last_turns(self) -> slice:
@@ -195,7 +195,7 @@ def ride(ride: Ride, fineness: int = 1) -> Trace:
         if len(samples) > MOST_ROWS or not math.isfinite(state.speed):
             raise UnstableError(f"{ride.name}: the reduced equation of motion could not be integrated")
         columns = dict(zip(solver.SAMPLE, samples.T, strict=True))
-        over = nothing_more(ride, *(columns[name] for name in ("time", "distance", "speed", "crank_speed")))
+        over = nothing_more(ride, *(columns[name] for name in ("time", "crank_angle", "crank_speed", "speed")))
         if over.any():
             columns, clock = {name: column[: int(np.argmax(over)) + 1] for name, column in columns.items()}, until
     coasting = columns.pop("coasting") > 0
@@ -203,13 +203,13 @@ def ride(ride: Ride, fineness: int = 1) -> Trace:
 
 
 def nothing_more(
-    ride: Ride, time: FloatArray, distance: FloatArray, speed: FloatArray, crank_speed: FloatArray
+    ride: Ride, time: FloatArray, crank_angle: FloatArray, crank_speed: FloatArray, speed: FloatArray
 ) -> BoolArray:
-    """Whether a ride is over: it has rolled back by a turn of the crank, or has stood still for long.
+    """Whether a ride is over: the crank has turned back by a whole turn, or everything has stood still for long.
 
-    In a turn the road and both legs are again what they were, and it only rolls faster; what stands still does so as
-    long as the muscles' answers do not change.
+    After that turn, driven by wheel or legs, it is again where it was, only faster; what stands still does so as long
+    as the muscles' answers do not change.
     """
-    back = np.maximum.accumulate(distance) - distance > 2 * np.pi * ride.travel
+    back = np.maximum.accumulate(crank_angle) - crank_angle > 2 * np.pi
     moved = np.maximum.accumulate(np.where((speed != 0) | (crank_speed != 0), time, 0.0))
     return np.asarray(back | (time - moved > STANDS + LAGS * ride.lag))

@@ -14,23 +14,41 @@ from fes_mj.simulation.road_mjcf import TIMESTEP
 from fes_mj.simulation.time_step import FINE_TURN, SHARE, TRIAL, local_errors
 
 MOST_STEPS = 2_000_000  # with their records two thirds of a gigabyte and half a minute
+# What a trial run loses may ask for so much finer a step than the closed form does, which knows no joint moments. To
+# lose still more is no matter of the step.
+FINER = 4.0
 
 
 def ride_timestep(trace: Trace) -> float:
     """Longest time step that keeps the predicted errors of a ride within SHARE of their limits, s; TIMESTEP at most.
 
     trace: the ride by the reduced equation of motion, which says how fast the crank is at each angle. Errors are of
-    second order in the step: the loop gap, and the work that the scheme loses, which may neither be seen by itself nor
-    in the speed. Raises InputError where the ride would take more than MOST_STEPS.
+    second order in the step: the loop gap, and the work that the scheme loses. Raises InputError where the ride would
+    take more than MOST_STEPS.
     """
-    limits = definitions()
     lost, gap = predicted_losses(trace, TIMESTEP)
-    shares = (
-        gap / limits["loop_gap"].limit,
-        lost / limits["ride_energy"].limit,
-        lost * sensitivity(trace) / limits["ride_speed"].limit,
-    )
-    step = TIMESTEP / math.sqrt(max(1.0, *(share / SHARE for share in shares)))
+    gaps = gap / (SHARE * definitions()["loop_gap"].limit)
+    return _within_reason(trace, TIMESTEP / math.sqrt(max(1.0, gaps, lost / allowed_loss(trace))))
+
+
+def tried_timestep(trace: Trace, trial: float, lost: float) -> float:
+    """The same, once a trial run with twice ride_timestep, `trial` s, has lost so much of its work: at most that.
+
+    lost: per work_scale.
+    """
+    finer = math.sqrt(abs(lost) / 4 / allowed_loss(trace))
+    return _within_reason(trace, trial / 2 / min(max(1.0, finer), FINER))
+
+
+def allowed_loss(trace: Trace) -> float:
+    """Part of its work_scale that a ride may lose: SHARE of what shows by itself, or in the speed."""
+    limits = definitions()
+    in_speed = limits["ride_speed"].limit / max(sensitivity(trace), 1e-9)
+    return SHARE * min(limits["ride_energy"].limit, in_speed)
+
+
+def _within_reason(trace: Trace, step: float) -> float:
+    """The step, s. Raises InputError where it takes too many of them."""
     needed = float(trace.time[-1]) / step
     if not needed <= MOST_STEPS:
         size = f"{needed:,.0f}" if math.isfinite(needed) else "endlessly many"

@@ -6,6 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from fes_mj.common.console import output
+from fes_mj.crosscheck.ride_case import RideCase
 from tests.cli.conftest import answer, names, result
 
 KEYS = {
@@ -31,6 +33,24 @@ def test_a_tricycle_that_stops_is_a_result(capsys: pytest.CaptureFixture[str]) -
     assert code == 0
     assert "It stops after" in out
     assert "The two solvers agree" in out
+
+
+def test_a_ride_on_which_the_solvers_do_not_agree_has_no_speed(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    real = RideCase.check
+    monkeypatch.setattr(RideCase, "check", lambda case, name, value: real(case, name, value + (name == "ride_settled")))
+    monkeypatch.setattr(output, "_force_terminal", True)
+    code, content = answer(capsys, "ride", "trt", "--duration", "2")
+    assert code == 1
+    assert content["verdict"] == "no-agreement"
+    empty = ("rides", "speed_kmh", "cadence_rpm", "distance_m", "stopped_at_s", "stopped_because", "reduced")
+    assert {content[name] for name in empty} == {None}
+    code, out, _ = result(capsys, "ride", "trt", "--duration", "2")
+    assert code == 1
+    assert "km/h" not in out
+    assert "\x1b[32m" not in out
+    assert "not agree" in out
 
 
 def test_out_writes_result_ride_and_model(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,7 +16,7 @@ from fes_mj.moments.muscle_response import place
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.moments.torque_map import torque_map
 from fes_mj.moments.torque_velocity import load_torque_velocity
-from fes_mj.riding.leg_table import LegTable, leg_table
+from fes_mj.riding.leg_table import CELL_TOLERANCE, STEP_TOLERANCE, LegTable, leg_table
 from fes_mj.riding.ride import Ride, Road, balancing_slope, steady_ripple
 from fes_mj.riding.trace import ride as solved
 from fes_mj.statics.equilibrium import crank_moment
@@ -109,6 +110,42 @@ def test_on_and_off_the_freewheel_at_half_the_step() -> None:
     assert 0.3 < trace.coasting_share < 0.95
     finer = solved(ride, 2)
     assert trace.mean_speed == pytest.approx(finer.mean_speed, rel=1e-4)
+
+
+DESIGNS = Path(__file__).parent / "designs"
+
+
+@pytest.mark.parametrize(
+    ("name", "group", "road", "launch", "speed"),
+    [
+        ("sharp", "p1p3", Road(slope=0.0133), 5.71, 5.214),
+        ("short_rocker", "p1p2", Road(0.0079, 16.7, 4.4, 0.0182, 0.28), 10.4, 7.7964),
+    ],
+)
+def test_near_a_dead_centre_it_is_as_fast_as_another_code_says(
+    name: str, group: str, road: Road, launch: float, speed: float
+) -> None:
+    """Converged values, km/h, of a multibody model that was written without this one, in steps of 0.1 deg."""
+    design = fes_mj.load_design(DESIGNS / f"{name}.toml")
+    trace = solved(Ride(design, fes_mj.load_moments(group), road, "fixed", launch=launch / 3.6))
+    assert trace.mean_speed is not None
+    assert 3.6 * trace.mean_speed == pytest.approx(speed, rel=2e-4)
+
+
+def test_the_table_is_finer_where_the_linkage_is_sharp(smooth_moments: fes_mj.JointMoments) -> None:
+    """Steps end at both ends of a cell with a break, and Simpson's rule over each is as exact as promised."""
+    sharp, blunt = fes_mj.load_design(DESIGNS / "sharp.toml"), fes_mj.load_design("trt")
+    table = leg_table(sharp, smooth_moments)
+    cells = len(table.ahead)
+    assert cells > len(leg_table(blunt, smooth_moments).ahead) == POINTS
+    inertia, rate, cell = table.masses.inertia, table.masses.inertia_rate, 2 * np.pi / cells
+    row, missed = 0, 0.0
+    while row < cells:
+        end = min(round(table.ahead[row] / cell), cells)
+        middle = np.interp((row + end) / 2, np.arange(cells + 1), rate)
+        simpson = (rate[row] + 4 * middle + rate[end]) * (end - row) * cell / 6
+        missed, row = missed + abs(simpson - (inertia[end] - inertia[row])), end
+    assert missed < (STEP_TOLERANCE + CELL_TOLERANCE) * inertia.max()
 
 
 def test_muscles_and_road_balance(smooth_moments: fes_mj.JointMoments) -> None:

@@ -37,12 +37,12 @@ def test_verdicts_and_their_reasons(ride: Ride, word: str, reason: str | None) -
     assert trace.rides == (word in ("rides", "coasts"))
 
 
-def test_a_ride_ends_where_it_has_rolled_back_by_a_turn_of_the_crank() -> None:
+def test_a_ride_ends_where_the_crank_has_turned_back_by_a_turn() -> None:
     trace = solved(Ride(fes_mj.load_design("r1"), PLAIN, Road(slope=0.10), duration=60))
     assert rolls_back(trace)
     assert sentence(trace).endswith("; then it rolls back.")
-    way_back = trace.distance.max() - trace.distance
-    assert way_back[-1] > 2 * math.pi * trace.ride.travel >= way_back[-2]
+    back = trace.crank_angle.max() - trace.crank_angle
+    assert back[-1] > 2 * math.pi >= back[-2]
 
 
 def test_a_ride_ends_where_it_stands_for_good(smooth_moments: fes_mj.JointMoments) -> None:

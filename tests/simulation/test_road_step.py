@@ -1,0 +1,63 @@
+"""The time step of a ride: second order, finer where the linkage is sharp or fast, refused with its number."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+import fes_mj
+from fes_mj.moments.torque_velocity import load_torque_velocity
+from fes_mj.riding.ride import Ride, Road
+from fes_mj.riding.trace import ride as solved
+from fes_mj.simulation.road import ride_on_road
+from fes_mj.simulation.road_mjcf import TIMESTEP
+from fes_mj.simulation.road_step import FINER, allowed_loss, predicted_losses, ride_timestep, tried_timestep
+
+P1P2 = fes_mj.load_moments("p1p2")
+DOWNHILL = Ride(fes_mj.load_design("d1"), P1P2.at_speed(load_torque_velocity("hill")), Road(slope=-0.05), duration=8.0)
+
+
+def test_the_prediction_is_what_mujoco_leaves() -> None:
+    """Of the gap, which does not depend on moments, within what crank speed varies in a step."""
+    trace = solved(DOWNHILL)
+    _, gap = predicted_losses(trace, TIMESTEP)
+    assert ride_on_road(DOWNHILL, TIMESTEP).loop_gap_max == pytest.approx(gap, rel=0.2)
+
+
+def test_losses_are_of_second_order() -> None:
+    trace = solved(DOWNHILL)
+    coarse, fine = predicted_losses(trace, TIMESTEP), predicted_losses(trace, TIMESTEP / 2)
+    assert fine == pytest.approx([value / 4 for value in coarse])
+
+
+def test_a_fast_crank_takes_finer_steps() -> None:
+    slow = Ride(fes_mj.load_design("trt"), P1P2, Road(slope=0.0112), "fixed", duration=8.0)
+    assert ride_timestep(solved(slow)) == TIMESTEP
+    assert ride_timestep(solved(DOWNHILL)) < TIMESTEP
+
+
+def test_a_trial_that_loses_more_than_predicted_asks_for_finer_steps() -> None:
+    trace = solved(DOWNHILL)
+    trial, allowed = 2 * ride_timestep(trace), allowed_loss(trace)
+    assert tried_timestep(trace, trial, allowed) == trial / 2
+    assert tried_timestep(trace, trial, 16 * allowed) == pytest.approx(trial / 4)
+    assert tried_timestep(trace, trial, -1e9 * allowed) == pytest.approx(trial / 2 / FINER)
+
+
+def test_too_many_steps_are_refused_with_their_number() -> None:
+    sharp = fes_mj.load_design(Path(__file__).parents[1] / "riding" / "designs" / "sharp.toml")
+    # its rocker and coupler pass 0.2 mm from being in line
+    longer = sharp.linkage.crank + _clearance(sharp) - 2e-4
+    ride = Ride(sharp.with_linkage(crank=longer), P1P2, Road(slope=0.01), "fixed", launch=8.0, duration=300.0)
+    with pytest.raises(fes_mj.InputError, match=r"needs [\d,]+ time steps, more than 2,000,000; give a shorter --dur"):
+        ride_timestep(solved(replace(ride)))
+
+
+def _clearance(design: fes_mj.Design) -> float:
+    """Of rocker and coupler from being in line, m."""
+    link = design.linkage
+    reach = min(
+        link.rocker + link.coupler - abs(link.pivot_to_crank),
+        abs(link.pivot_to_crank) - abs(link.rocker - link.coupler),
+    )
+    return reach - link.crank
