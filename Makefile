@@ -38,19 +38,21 @@ format: $(VENV)/.ready
 # Speed, as ratios within one run, beside other programs: results/benchmarks/, each with the commit it was measured at.
 benchmark: $(VENV)/.ready
 	$(PIP) --group benchmark
-	for name in core start exudyn optimization ride video; do $(BIN)/python -m benchmarks.$$name || exit 1; done
+	for name in core start exudyn muscles optimization ride video; do $(BIN)/python -m benchmarks.$$name || exit 1; done
 
 # Every check on every design, refined, with all faults injected: results/verification.md; every ride by both solvers:
-# results/ride_verification.md; what each setting of the simulation is worth: results/settings.md
+# results/ride_verification.md; what muscles leave of the gains: results/muscles.md; what each setting of the simulation is worth: results/settings.md
 verification: $(VENV)/.ready
 	$(BIN)/python tools/update_verification.py
 	$(BIN)/python -m studies.ride_verification
+	$(BIN)/python -m studies.muscles
 	$(BIN)/python -m studies.settings
 
-# What the package ships as data: the identified designs and the recovered moments.
+# What the package ships as data: the identified designs, the recovered moments and the riders who may have given them.
 catalogue: $(VENV)/.ready
 	$(BIN)/python tools/make_catalogue.py
 	$(BIN)/python tools/reconstruct_moments.py
+	$(BIN)/python -m tools.fit_muscles
 
 # The paper's tables and figures beside ours: results/
 reproduce: $(VENV)/.ready

@@ -1,6 +1,5 @@
 """What a muscle makes of its stimulation: first order, with a rise and a slower fall, over a turn that repeats."""
 
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -28,25 +27,19 @@ def answer(stimulation: FloatArray, turn: Any, rise: Any, fall: Any) -> FloatArr
     last axis.
     """
     here = np.ascontiguousarray(np.moveaxis(np.atleast_2d(stimulation), -1, 0))
-    there = np.concatenate([here[1:], here[:1]])
-    (kept, added), (also_kept, also_added) = (
-        _steps(here, there, np.asarray(turn) / len(here), np.asarray(constant)) for constant in (rise, fall)
-    )
-    result, higher = np.zeros((len(here) + 1, *here.shape[1:])), np.empty(here.shape[1:])
+    rise, fall, _ = np.broadcast_arrays(rise, fall, here[0])
+    constant = np.stack([rise, fall]).astype(here.dtype)
+    # da/dt = (u - a) / constant with linear u: what is kept of a over a step, and what is added by u at either end
+    share = constant * len(here) / np.asarray(turn, here.dtype)
+    kept = np.exp(-1 / share)
+    added = here[:, None] * (share * (1 - kept) - kept)
+    added += np.roll(here, -1, axis=0)[:, None] * (1 - share * (1 - kept))
+    result, both = np.zeros((len(here) + 1, *here.shape[1:]), here.dtype), np.empty_like(kept)
     while True:
-        for point, (now, then) in enumerate(pairwise(result)):
-            np.multiply(now, kept, out=higher)
-            higher += added[point]
-            np.multiply(now, also_kept, out=then)
-            then += also_added[point]
-            np.maximum(then, higher, out=then)
+        for change, now, then in zip(added, result, result[1:], strict=False):
+            np.multiply(kept, now, out=both)
+            both += change
+            np.maximum(both[0], both[1], out=then)
         if np.max(np.abs(result[-1] - result[0]), initial=0.0) < _CLOSED:
             return np.ascontiguousarray(np.moveaxis(result[:-1], 0, -1)).reshape(stimulation.shape)
         result[0] = result[-1]
-
-
-def _steps(here: FloatArray, there: FloatArray, seconds: Any, constant: Any) -> tuple[FloatArray, FloatArray]:
-    """Of da/dt = (u - a) / constant over steps of this length with linear u: what is kept of a, and what is added."""
-    kept = np.exp(-seconds / constant)
-    part = (1 - kept) * constant / seconds
-    return kept, here * (part - kept) + there * (1 - part)

@@ -17,17 +17,21 @@ PLATEAU = 1.4  # largest force of a lengthening muscle per isometric force (Thel
 _LENGTHENING = 7.56 / CURVATURE
 
 
-def force_length(fibre: Any) -> Any:
+def force_length(fibre: FloatArray) -> FloatArray:
     """Force per largest isometric force at these fibre lengths, in optimal fibre lengths."""
-    return np.exp(-(((fibre - 1) / WIDTH) ** 2))
+    apart = (fibre - 1) / WIDTH
+    apart *= -apart
+    return np.asarray(np.exp(apart, out=apart))
 
 
-def force_velocity(shortening: Any) -> Any:
+def force_velocity(shortening: FloatArray) -> FloatArray:
     """Force per isometric force at these shortening speeds, in largest speeds; none from 1 on, PLATEAU below -1."""
-    positive, negative = np.clip(shortening, 0.0, 1.0), np.clip(shortening, -1.0, 0.0)
-    # each branch is as at rest where the other counts
-    shorter = (1 - positive) / (1 + positive / CURVATURE)
-    return shorter + (PLATEAU - 1) * (1 - (1 + negative) / (1 - _LENGTHENING * negative))
+    speed = np.maximum(shortening, 0)
+    force = (1 - np.minimum(speed, 1)) / (1 + speed / CURVATURE)
+    np.clip(shortening, -1, 0, out=speed)  # of lengthening; the other branch is 1 there
+    speed *= (PLATEAU - 1) * (_LENGTHENING + 1) / (_LENGTHENING * speed - 1)
+    force += speed
+    return force
 
 
 def tension(
@@ -40,7 +44,15 @@ def tension(
     muscle keeping its thickness. A muscle shorter than its tendon pulls with nothing.
     """
     along = np.maximum(length - slack, 0)
-    fibre = np.sqrt(along * along + (optimal * np.sin(pennation)) ** 2)
-    cosine = along / np.maximum(fibre, np.finfo(float).tiny)
-    shortening = speed * cosine * (-1 / (max_speed * optimal))
-    return force_length(fibre / optimal) * force_velocity(shortening) * cosine, cosine
+    fibre = along * along
+    fibre += (optimal * np.sin(pennation)) ** 2
+    np.sqrt(fibre, out=fibre)
+    along /= np.maximum(fibre, np.finfo(float).tiny)
+    cosine = along
+    fibre /= optimal
+    force = force_length(fibre)
+    np.multiply(speed, cosine, out=fibre)
+    fibre *= -1 / (max_speed * optimal)
+    force *= force_velocity(fibre)
+    force *= cosine
+    return force, cosine

@@ -15,7 +15,7 @@ from fes_mj.muscles.pull import Pull, pull
 from fes_mj.muscles.riders import Riders
 from fes_mj.muscles.timing import ANGLES, DUTY, Windows, activation, best_windows
 
-BLOCK = 128  # members of designs at once: more leave the processor's cache, fewer cost calls
+BLOCK = 64  # members of designs at once: more leave the processor's cache, fewer cost calls
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,16 +58,22 @@ def best_turn(
     """Of riders stimulated at their best (timing.best_windows), and the windows; cadence: by default the design's."""
     cadence = design.linkage.cadence if cadence is None else cadence
     pulled = pull(riders, kinematics.solve(design, ANGLES), cadence)
-    windows = best_windows(pulled.power, riders, cadence, duty, each_its_own)
+    windows, _ = best_windows(pulled.power, riders, cadence, duty, each_its_own)
     return MuscleTurn(pulled, activation(windows, riders, cadence)), windows
 
 
 def best_power(riders: Riders, design: Design, cadence: float | None = None, duty: float = DUTY) -> FloatArray:
-    """Mean power of one leg on each design of a batch, stimulated at its best, W, shape (members, designs).
+    """Expected mean power of one leg on each design of a batch, stimulated at its best, W, shape (designs,).
 
     cadence: rad/s, by default the designs' own. NaN for a linkage that does not turn.
     """
+
+    def power(block: Design) -> FloatArray:
+        speed = block.linkage.cadence if cadence is None else cadence
+        pulled = pull(riders, kinematics.solve(block, ANGLES), speed)
+        return np.asarray(best_windows(pulled.power, riders, speed, duty)[1][0])
+
     size = max(1, BLOCK // len(riders))
     blocks = (design.taken(slice(start, start + size)) for start in range(0, design.size, size))
     with np.errstate(invalid="ignore"):
-        return np.concatenate([best_turn(riders, block, cadence, duty)[0].power_mean for block in blocks], axis=1)
+        return np.concatenate([power(block) for block in blocks])

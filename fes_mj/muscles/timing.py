@@ -57,8 +57,10 @@ def responded(stimulation: FloatArray, riders: Riders, cadence: FloatArray) -> F
 
 def best_windows(
     power: FloatArray, riders: Riders, cadence: Any, duty: float = DUTY, each_its_own: bool = False
-) -> Windows:
+) -> tuple[Windows, FloatArray]:
     """The windows, none wider than a share `duty` of the turn, with the largest power in expectation over the riders.
+
+    And that power, W, of all groups, shape (members or 1, designs).
 
     power: W per activation, shape (groups, members, designs, angles), over ANGLES; cadence: as for `activation`.
     each_its_own: the best ones of every member instead, for one who has been measured completely.
@@ -69,9 +71,13 @@ def best_windows(
             f"duty is {duty:g}; it must be from {STEP / 360:.3f}, a window of {STEP} deg, to 1, all the turn"
         )
     widths = np.arange(STEP, np.floor(360 * duty / STEP + 1e-9) * STEP + 1, STEP)
-    answers = activation(Windows(np.zeros((len(widths), 1, 1)), widths[:, None, None]), riders, cadence)
+    # in single precision, which tells windows apart by 1e-6 of the power
+    single, cadence = np.float32, np.reshape(cadence, (-1, 1))
+    since_on = (ANGLES - cadence * riders["delay_s"]).astype(single)
+    tried = np.radians(widths).astype(single)[:, None, None, None]
+    answers = responded(trapezium(since_on, tried, (cadence * ramp()).astype(single)), riders, cadence)
     # harmonics beyond half the number of starts have less than 1e-6 of the power, as both curves are continuous
-    spectra = [np.fft.rfft(values)[..., : _STARTS // 2] for values in (answers, power)]
+    spectra = [np.fft.rfft(values)[..., : _STARTS // 2] for values in (answers, power.astype(single))]
     members = "m" if each_its_own else ""
     together = np.einsum(f"wmdk,gmdk->g{members}dwk", np.conj(spectra[0]), spectra[1], optimize=True)
     if not each_its_own:
@@ -82,4 +88,5 @@ def best_windows(
     best, largest = flat.argmax(axis=-1), flat.max(axis=-1)
     worth = largest > LEAST_SHARE * np.maximum(largest, 0).sum(axis=0)
     width, start = np.unravel_index(best, expected.shape[-2:])
-    return Windows(np.where(worth, STEP * start, 0.0), np.where(worth, widths[width], 0.0))
+    windows = Windows(np.where(worth, STEP * start, 0.0), np.where(worth, widths[width], 0.0))
+    return windows, (worth * largest).sum(axis=0)

@@ -17,7 +17,7 @@ def test_shortening_follows_hills_hyperbola():
 
 
 def test_lengthening_is_steeper_than_shortening():
-    step = 1e-9
+    step = np.array([1e-9])
     shorter, longer = (1 - force_velocity(step)) / step, (force_velocity(-step) - 1) / step
     assert shorter == pytest.approx(5.0, rel=1e-6)  # 1 + 1 / CURVATURE
     assert longer == pytest.approx(0.4 * (1 + 30.24), rel=1e-6)

@@ -13,9 +13,8 @@ def test_batch_is_each_of_its_designs_and_none_for_what_cannot_turn(riders):
     gears = np.array([[2.0], [design.linkage.gear_ratio], [2.0]])
     batch = best_power(riders, design.with_linkage(crank=cranks, gear_ratio=gears))
     alone, _ = best_turn(riders, design)
-    assert batch[:, 1] == pytest.approx(alone.power_mean[:, 0], rel=1e-9)
-    assert np.isnan(batch[:, 2]).all()
-    assert np.isfinite(batch[:, :2]).all()
+    assert batch[1] == pytest.approx(alone.power_mean.mean(), rel=1e-5)  # windows are chosen in single precision
+    assert np.isfinite(batch).tolist() == [True, True, False]
 
 
 def test_joints_do_the_work_of_the_muscles_and_two_legs_are_half_a_turn_apart(riders):

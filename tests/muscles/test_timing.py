@@ -5,7 +5,7 @@ from fes_mj.linkage.design_file import load_design
 from fes_mj.muscles.power import best_turn
 from fes_mj.muscles.prior import ramp
 from fes_mj.muscles.riders import Riders
-from fes_mj.muscles.timing import ANGLES, DUTY, STEP, Windows, activation, best_windows
+from fes_mj.muscles.timing import ANGLES, DUTY, STEP, Windows, activation
 
 DESIGN = load_design("d1")
 CADENCE = DESIGN.linkage.cadence
@@ -33,7 +33,7 @@ def test_no_other_window_of_any_width_is_better(riders, each_its_own):
     chosen = np.mean(turn.activation * turn.pulled.power, axis=-1)[..., 0]
     chosen = chosen if each_its_own else chosen.mean(axis=1, keepdims=True)
     stimulated = windows.width[..., 0] > 0
-    assert np.all((chosen - others)[stimulated] >= -1e-6 * others[stimulated])
+    assert np.all((chosen - others)[stimulated] >= -1e-5 * others[stimulated])  # chosen in single precision
     assert np.all(windows.width <= 360 * DUTY)
     assert np.all(windows.on % STEP == 0)
 
@@ -53,16 +53,9 @@ def test_equal_times_are_a_mean_with_the_adjoint(riders):
 
 def test_delay_is_confounded_with_the_on_angle(riders):
     step = np.radians(STEP) / CADENCE
-    early, late = (
-        best_windows(_power(changed(riders, delay_s=n * step)), changed(riders, delay_s=n * step), CADENCE)
-        for n in (1, 3)
-    )
+    early, late = (best_turn(changed(riders, delay_s=n * step), DESIGN)[1] for n in (1, 3))
     assert (early.on - late.on) % 360 == pytest.approx(2 * STEP)
     assert early.width == pytest.approx(late.width)
-
-
-def _power(riders):
-    return best_turn(riders, DESIGN)[0].pulled.power
 
 
 def test_groups_that_give_nothing_are_not_stimulated(riders):
