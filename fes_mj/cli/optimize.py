@@ -10,7 +10,7 @@ import fes_mj
 from fes_mj.cli.options import Out
 from fes_mj.cli.process import interruption_code
 from fes_mj.cli.search_options import SearchOptions, shell_word
-from fes_mj.common.console import errors, print_table, progress_bar, say
+from fes_mj.common.console import conclude, errors, print_table, progress_bar, say
 from fes_mj.common.parallel import Workers
 from fes_mj.common.text import printable
 from fes_mj.common.writing import require_replaceable, require_writable, write_files, write_text
@@ -26,28 +26,34 @@ _RIDER_COLUMNS = ("thigh, m", "shank, m", "seat towards the crank, m", "seat up,
 
 
 def optimize(
-    kind: Literal["crt", "cdt"],
+    kind: Literal["crt", "cdt", "trt"],
     /,
     *,
     options: SearchOptions = SearchOptions(),
     out: Out | None = None,
     report: Path | None = None,
 ) -> int:
-    """Find the linkage with the most mean crank power; exit code 1 if its simulation disagrees with statics.
+    """Find the linkage with the most mean crank power that can be built; exit code 1 if its simulation disagrees.
 
     With -o the best design so far is in its file from the first feasible one on. However the run is stopped, the same
     command goes on: what is known stands in the folder BEST.search beside the file, which is gone at the end. Finished
     searches are not done again.
 
     Args:
-        kind: Which six-bar: crt (pedal on the rocker) or cdt (pedal on the coupler).
+        kind: Which linkage: crt (pedal on the rocker), cdt (on the coupler), or trt (on the crank) as a yardstick.
         out: The design file to write (.toml), with the command that finds it again; its model (.xml), and the front
             (.csv), appear beside it. A file that was there is replaced at the end.
         report: A page on the design (.html): numbers, motion, power, constraints.
     """
     options.check()
     _check_files(out, report, options)
-    moments, compared_with = options.load_moments(), load_design(options.speeds_of)
+    moments, compared_with = options.load_moments(), load_design(options.like or options.speeds_of)
+    if options.print_problem:
+        from fes_mj.optimization.problem import make_problem
+        from fes_mj.optimization.problem_file import problem_text
+
+        print(problem_text(make_problem(kind, moments, **options.problem_options())), end="")
+        return 0
     command = options.command(kind) + (f" -o {shell_word(out.name)}" if out else "")
     origin = f"Found by fes_mj {version('fes-mj')}:\n{command}"
     from fes_mj.optimization.findings import Findings
@@ -139,6 +145,10 @@ def _write(optimum: Optimum, origin: str, out: Path, options: SearchOptions) -> 
 def _print(winner: Winner, optimum: Optimum) -> None:
     """Tables of what was found, and notes on what to beware of."""
     front, design, people = optimum.front, winner.design, optimum.problem.people
+    if doubts := [*winner.build.doubts(), *optimum.edges]:
+        conclude(False, "Beware", f": {'; '.join(doubts)}.")
+    if optimum.repair:
+        say(f"the start did not keep the limits and was repaired: {optimum.repair}")
     title = f"{design.name}: {design.linkage.architecture.title}; {winner.case.moments.name}"
     print_table(f"{title}; {optimum.method}, {optimum.evaluations:,} evaluations", ("", "value"), winner.rows)
     print_table("Constraints", ("constraint", "value", "limit", ""), optimum.limit_rows)
@@ -149,4 +159,4 @@ def _print(winner: Winner, optimum: Optimum) -> None:
         print_table(f"Front, {front.table.title}", [*front.table.columns], front.table.cells)
     for note in winner.notes:
         say(f"note: {note}")
-    say("note: the design space is an assumption, see --problem")
+    say(f"note: the design space is {optimum.problem.limits.space}; --print-problem writes all that was limited")

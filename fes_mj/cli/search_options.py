@@ -20,7 +20,7 @@ Methods = Literal["differential-evolution", "cma-es", "nsga-ii", "random-pursuit
 _Speed = Annotated[float, Parameter(validator=Number(gt=0))]
 _PEOPLE = Group("People", validator=needs("--riders"))
 _PACKAGES = {"cma-es": "cma", "nsga-ii": "pymoo"}
-_WITHOUT_EFFECT = ("json", "quiet", "jobs", "cluster")  # on what is found
+_WITHOUT_EFFECT = ("json", "quiet", "jobs", "cluster", "print_problem")  # on what is found
 
 
 @Parameter(name="*")
@@ -33,7 +33,10 @@ class SearchOptions(PrintOptions, MomentsOptions):
         budget: Evaluations of each search (default 50,000; random pursuit stops by itself).
         searches: Independent searches, of which the best counts (nsga-ii makes one).
         seed: Of the random numbers; the same seed finds the same design, however many jobs.
-        start: A feasible design to start from (trt, r1, ..., or a file); by default random ones.
+        like: Your own design (trt, r1, ..., or a file): its rider, seat, place and cadence, its joint speeds as limits,
+            and the start if it is of the kind; takes the place of --start and --speeds-of.
+        start: A design to start from (trt, r1, ..., or a file); by default random ones. If it does not keep the
+            limits, the nearest that does.
         speeds_of: The design whose mean joint speeds are the limits, and whose power is compared.
         knee_speed_limit: Largest mean absolute knee speed in deg/s instead (107.1 in the TRT).
         hip_speed_limit: Largest mean absolute hip speed in deg/s instead (69.1 in the TRT).
@@ -47,6 +50,14 @@ class SearchOptions(PrintOptions, MomentsOptions):
         sample_seed: Of the sample's random numbers.
         smooth: With nsga-ii: also the least coefficient of fluctuation.
         problem: Your own limits, search ranges and design space: an edited copy of optimization.toml.
+        limits: Those of what can be built beside the paper's (buildable), or the paper's alone (paper).
+        transmission_angle_min: Smallest transmission angle, deg, instead of the problem file's (30).
+        hole_distance_min: Least distance of two holes in a link, m (0.025).
+        pin_force_max: Largest force on a pin, N, riding with masses (1500).
+        hip_swing_min: Least swing of the hip, deg (5).
+        extrapolated_max: Largest share of the turn outside the moments' range (0).
+        clearance_min: Least clearance of what moves, m (0.005).
+        print_problem: Print the problem that is solved, as a problem file with comments, and solve nothing.
         jobs: Processes; each search is a task.
         cluster: Dask scheduler, tcp://host:port, to send the searches to.
     """
@@ -55,6 +66,7 @@ class SearchOptions(PrintOptions, MomentsOptions):
     budget: Annotated[int | None, Parameter(validator=Number(gte=1000))] = None
     searches: Annotated[int, Parameter(validator=Number(gte=1))] = 4
     seed: Seed = 0
+    like: str | None = None
     start: str | None = None
     speeds_of: str = "trt"
     knee_speed_limit: _Speed | None = None
@@ -66,11 +78,26 @@ class SearchOptions(PrintOptions, MomentsOptions):
     sample_seed: Annotated[Seed, Parameter(group=_PEOPLE)] = 0
     smooth: Flag = False
     problem: Path | None = None
+    limits: Literal["buildable", "paper"] = "buildable"
+    transmission_angle_min: Annotated[float | None, Parameter(validator=Number(gte=0, lte=90))] = None
+    hole_distance_min: Annotated[float | None, Parameter(validator=Number(gte=0, lte=1))] = None
+    pin_force_max: Annotated[float | None, Parameter(validator=Number(gt=0))] = None
+    hip_swing_min: Annotated[float | None, Parameter(validator=Number(gte=0, lte=180))] = None
+    extrapolated_max: Annotated[float | None, Parameter(validator=Number(gte=0, lte=1))] = None
+    clearance_min: Annotated[float | None, Parameter(validator=Number(lte=1))] = None
+    print_problem: Flag = False
     jobs: Jobs = 1
     cluster: str | None = None
 
     def check(self) -> None:
         """Refuse unusable options before anything runs."""
+        if self.like and (self.start or self.speeds_of != "trt"):
+            raise InputError("--like takes the place of --start and --speeds-of; leave these out")
+        if self.limits == "paper" and self.overrides:
+            raise InputError(
+                f"--{next(iter(self.overrides)).replace('_', '-')} is none of the paper's limits: not with "
+                "--limits paper"
+            )
         if self.caution and (self.moments or self.method == "nsga-ii"):
             raise InputError(
                 "--caution needs the error bars of one group's recovered moments: not with --moments or nsga-ii"
@@ -82,6 +109,13 @@ class SearchOptions(PrintOptions, MomentsOptions):
         if self.smooth and self.method != "nsga-ii":
             raise InputError("--smooth is an objective of its own: it needs --method nsga-ii")
 
+    @property
+    def overrides(self) -> dict[str, float]:
+        """Limits of what can be built that options give, by key of a problem file."""
+        from fes_mj.optimization.buildable import KEYS
+
+        return {key: value for key in KEYS if (value := getattr(self, key)) is not None}
+
     def problem_options(self) -> dict[str, Any]:
         """What they ask of the problem, as make_problem takes it."""
         from fes_mj.optimization.limits import DEFAULT
@@ -90,6 +124,8 @@ class SearchOptions(PrintOptions, MomentsOptions):
         return {
             "compared_with": self.speeds_of,
             "start": self.start,
+            "like": self.like,
+            "build": None if self.limits == "paper" else self.overrides,
             "limits": self.problem or DEFAULT,
             "knee_speed": self.knee_speed_limit,
             "hip_speed": self.hip_speed_limit,
@@ -100,7 +136,7 @@ class SearchOptions(PrintOptions, MomentsOptions):
 
     def inputs(self, *designs: str) -> list[Path]:
         """The files that the options name, which no output may replace."""
-        named = (self.start, self.speeds_of, self.problem)
+        named = (self.like, self.start, self.speeds_of, self.problem)
         return [*(Path(name) for name in named if name), *super().inputs(*designs)]
 
     def command(self, kind: str) -> str:

@@ -75,9 +75,16 @@ def validate(
 
 
 def _explain(name: str) -> int:
+    from fes_mj.optimization.limits import MEANINGS
+
     if name == "all":
         rows = [(check.name, check.kind, number(check.limit, check.unit)) for check in definitions().values()]
         print_table("Checks", ("check", "kind", "limit"), rows)
+        return 0
+    if meaning := MEANINGS.get(name.strip().lower().replace(" ", "_").replace("-", "_")):
+        say(f"{name}: {meaning.words}", "bold")
+        say(f"  a limit of `fes_mj optimize`; where it is set: {meaning.where}")
+        say("  `fes_mj optimize ... --print-problem` writes the problem file that has it")
         return 0
     check = find(name)
     say(f"{check.name}: {check.quantity}", "bold")

@@ -51,32 +51,38 @@ class Gap(NamedTuple):
 _Core: TypeAlias = tuple[complex, ...]
 
 
+@lru_cache(maxsize=8)
+def _motion(design: Design, points: int) -> Motion:
+    return solve(design, np.linspace(0, 2 * np.pi, points, endpoint=False))
+
+
 @lru_cache(maxsize=1000)
 def _nearest(
-    design: Design, body: str, core: _Core, other_body: str, other_core: _Core
+    design: Design, points: int, body: str, core: _Core, other_body: str, other_core: _Core
 ) -> tuple[float, float, tuple[complex, complex]]:
     """Least distance of two cores in a turn, m, the crank angle there, rad, and the nearest points."""
     import shapely
 
-    motion = solve(design, FULL_TURN)
-    cores = [
-        np.broadcast_to(_placed(motion, *shape), FULL_TURN.shape) for shape in ((body, core), (other_body, other_core))
-    ]
+    motion = _motion(design, points)
+    placed = (_placed(design, points, *shape) for shape in ((body, core), (other_body, other_core)))
+    cores = [np.broadcast_to(shape, motion.crank_angle.shape) for shape in placed]
     apart = shapely.distance(*cores)
     place = int(apart.argmin())
     start, end = shapely.get_coordinates(shapely.shortest_line(cores[0][place], cores[1][place])) @ (1, 1j)
-    return float(apart[place]), float(FULL_TURN[place]), (complex(start), complex(end))
+    return float(apart[place]), float(motion.crank_angle[place]), (complex(start), complex(end))
 
 
-def _placed(motion: Motion, body: str, core: _Core) -> Any:
+@lru_cache(maxsize=64)
+def _placed(design: Design, points: int, body: str, core: _Core) -> Any:
     """A core as shapely's geometry: over the turn, or once if it stands still."""
     import shapely
 
-    points = np.array(core)
+    corners = np.array(core)
     if body:
-        origin = np.broadcast_to(motion.points[BODIES[body][0]].value, FULL_TURN.shape)
-        points = origin[:, None] + motion.direction(body)[:, None] * points
-    plane = np.stack([points.real, points.imag], axis=-1)
+        motion = _motion(design, points)
+        origin = np.broadcast_to(motion.points[BODIES[body][0]].value, motion.crank_angle.shape)
+        corners = origin[:, None] + motion.direction(body)[:, None] * corners
+    plane = np.stack([corners.real, corners.imag], axis=-1)
     if len(core) == 1:
         return shapely.points(plane[..., 0, :])
     return (shapely.linestrings if len(core) == 2 else shapely.polygons)(plane)
@@ -84,7 +90,7 @@ def _placed(motion: Motion, body: str, core: _Core) -> Any:
 
 @dataclass(frozen=True)
 class Side:
-    """Rider, links and frame from the side, over FULL_TURN; plates and pins (diameter, m) by name.
+    """Rider, links and frame from the side; plates and pins (diameter, m) by name. points: crank angles of the turn.
 
     Raises MissingPartError where shapely is not installed.
     """
@@ -92,13 +98,14 @@ class Side:
     design: Design
     plates: Mapping[str, Plate]
     pins: Mapping[str, float]
+    points: int = len(FULL_TURN)
 
     def __post_init__(self) -> None:
         require_extra("build", "shapely")
 
     @cached_property
     def motion(self) -> Motion:
-        return solve(self.design, FULL_TURN)
+        return _motion(self.design, self.points)
 
     @cached_property
     def shapes(self) -> dict[str, list[Shape]]:
@@ -119,7 +126,9 @@ class Side:
         return min(gaps, key=lambda gap: gap.distance)
 
     def _between(self, one: Shape, other: Shape) -> Gap:
-        apart, crank_angle, (start, end) = _nearest(self.design, one.body, one.core, other.body, other.core)
+        apart, crank_angle, (start, end) = _nearest(
+            self.design, self.points, one.body, one.core, other.body, other.core
+        )
         along = (end - start) / apart if apart else 0.0
         ends = start + one.radius * along, end - other.radius * along
         return Gap((one.name, other.name), apart - one.radius - other.radius, crank_angle, ends)
@@ -129,15 +138,20 @@ class Side:
         return "thigh", "shank", "boot"
 
     @cached_property
-    def gaps(self) -> tuple[Gap, ...]:
-        """Of every pair of parts that are not joined and could meet."""
+    def pairs(self) -> tuple[tuple[str, str], ...]:
+        """Parts that are not joined and could meet."""
         links, moving = tuple(self.plates), (*self.limbs, *self.plates)
         pairs = [*itertools.combinations(links, 2), *itertools.product(links, self.pins)]
         pairs += itertools.product(self.limbs, links)
         pairs += itertools.product(moving, [part for part in FIXED if part in self.shapes])
         joints = self.design.linkage.architecture.joints
         apart = (pair for pair in pairs if not any({*pair} <= {joint, *bodies} for joint, bodies in joints.items()))
-        return tuple(self.gap(*pair) for pair in apart if pair != ("thigh", "seat"))  # on which it lies
+        return tuple(pair for pair in apart if pair != ("thigh", "seat"))  # on which it lies
+
+    @cached_property
+    def gaps(self) -> tuple[Gap, ...]:
+        """Of all pairs."""
+        return tuple(self.gap(*pair) for pair in self.pairs)
 
     @property
     def unknown(self) -> list[tuple[str, str]]:
@@ -146,14 +160,18 @@ class Side:
         return list(itertools.product((*self.limbs, *self.plates), missing))
 
     @property
-    def hindrances(self) -> list[Gap]:
-        """Parts nearer than CLEARANCE to what they cannot pass beside: seat and ground, of links also the wheel."""
+    def walls(self) -> list[Gap]:
+        """To what nothing passes beside: seat and ground, of links also the wheel."""
         return [
-            gap
-            for gap in self.gaps
-            if gap.distance < CLEARANCE
-            and (gap.parts[1] in ("seat", "ground") or (gap.parts[1] == "wheel" and gap.parts[0] in self.plates))
+            self.gap(part, wall)
+            for part, wall in self.pairs
+            if wall in ("seat", "ground") or (wall == "wheel" and part in self.plates)
         ]
+
+    @property
+    def hindrances(self) -> list[Gap]:
+        """Those of the walls that are nearer than CLEARANCE."""
+        return [gap for gap in self.walls if gap.distance < CLEARANCE]
 
 
 def _of_frame(design: Design) -> Iterator[Shape]:

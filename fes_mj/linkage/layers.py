@@ -66,10 +66,28 @@ def stack(side: Side) -> Stack:
 
     Raises InputError, naming the pair, where links or pins meet in whatever layers the links lie.
     """
+    layers, nearest = _arrangement(side)
+    if nearest is None or nearest.distance >= CLEARANCE:
+        return Stack(side, layers)
+    raise InputError(
+        f"{side.design.name}: the links cannot be laid out: in whatever layers they lie, something meets; in the best "
+        f"of them {nearest.pair} come as near as {1e3 * nearest.distance:.1f} mm at crank angle "
+        f"{np.degrees(nearest.crank_angle):.0f} deg ({1e3 * CLEARANCE:g} mm are needed); move them apart"
+    )
+
+
+def least_clearance(side: Side) -> float:
+    """What is left between moving parts in the best layers, and to what they cannot pass beside, m."""
+    _, nearest = _arrangement(side)
+    return min(gap.distance for gap in (*side.walls, *([nearest] if nearest else [])))
+
+
+def _arrangement(side: Side) -> tuple[dict[str, int], Gap | None]:
+    """Layers by link, and what comes nearest in them: the fewest that are clear, or else the clearest."""
     links, joints = tuple(side.plates), side.design.linkage.architecture.joints
-    gaps = {gap.parts: gap for gap in side.gaps}
-    least: Gap | None = None
-    best: tuple[tuple[int, int], dict[str, int]] | None = None
+    apart = {*links, *side.pins}
+    gaps = {pair: side.gap(*pair) for pair in side.pairs if {*pair} <= apart}
+    candidates: list[tuple[tuple[float, int, int], dict[str, int], Gap | None]] = []
     for numbers in itertools.product(range(1, len(links) + 1), repeat=len(links)):
         if {*numbers} != {*range(1, max(numbers) + 1)}:
             continue
@@ -78,20 +96,12 @@ def stack(side: Side) -> Stack:
         if any(level[one] == level[other] for one, other in joints.values() if {one, other} <= {*links}):
             continue
         spans = {joint: sorted(level[body] for body in joints[joint]) for joint in side.pins}
-        worst = min(_meeting(layers, spans, gaps), key=lambda gap: gap.distance, default=None)
-        if worst and worst.distance < CLEARANCE:
-            least = max((gap for gap in (least, worst) if gap), key=lambda gap: gap.distance)
-            continue
+        nearest = min(_meeting(layers, spans, gaps), key=lambda gap: gap.distance, default=None)
+        lacking = max(0.0, CLEARANCE - nearest.distance) if nearest else 0.0
         length = sum(high - low for low, high in spans.values())
-        best = min(candidate for candidate in (best, ((max(numbers), length), layers)) if candidate)
-    if best:
-        return Stack(side, best[1])
-    assert least
-    raise InputError(
-        f"{side.design.name}: the links cannot be laid out: in whatever layers they lie, something meets; in the best "
-        f"of them {least.pair} come as near as {1e3 * least.distance:.1f} mm at crank angle "
-        f"{np.degrees(least.crank_angle):.0f} deg ({1e3 * CLEARANCE:g} mm are needed); move them apart"
-    )
+        candidates.append(((lacking, max(numbers), length), layers, nearest))
+    _, layers, nearest = min(candidates, key=lambda candidate: candidate[0])
+    return layers, nearest
 
 
 def _meeting(

@@ -7,7 +7,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -108,14 +108,14 @@ def _offset(start: complex, end: complex, point: complex) -> float:
     return float((np.conj(along) * (point - start)).imag) / abs(along)
 
 
-def hole_places(design: Design) -> dict[str, dict[str, complex]]:
-    """Joints of every link (not of the leg) and where they are in its frame, by its name, m."""
+def hole_places(design: Design) -> dict[str, dict[str, Any]]:
+    """Joints of every link (not of the leg) and where they are in its frame, by its name, m; of a batch arrays."""
     architecture, places = design.linkage.architecture, {}
     for body in architecture.bodies[2:]:
-        length = float(design.link_lengths[body])
-        joints = dict(zip(BODIES[body], (0j, complex(length)), strict=True))
+        length = design.link_lengths[body] + 0j
+        joints = dict(zip(BODIES[body], (0 * length, length), strict=True))
         if body == architecture.pedal_body:
             joints = {joint: place for joint, place in joints.items() if joint in architecture.joints}
-            joints["pedal"] = length * complex(design.linkage.pedal_offset)
+            joints["pedal"] = length * design.linkage.pedal_offset
         places[body] = joints
     return places

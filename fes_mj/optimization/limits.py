@@ -1,6 +1,8 @@
 """The limits of the paper's Section 6: as a TOML file, by name, and the numbers that they limit, for populations."""
 
-from dataclasses import dataclass
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -14,24 +16,28 @@ from fes_mj.linkage.design import Design
 from fes_mj.linkage.joints import JOINTS, PerJoint
 from fes_mj.linkage.variables import COMPONENTS, LENGTHS
 from fes_mj.moments.reference_tricycle import ReferenceTricycle
+from fes_mj.optimization.buildable import KEYS, BuildLimits, hole_distance, transmission_angle
 from fes_mj.statics.cycles import Cycles
 
 DEFAULT = DATA / "optimization.toml"
+PIVOTS = ("R1x", "R1y", "R7x", "R7y")
 VARIED = (*LENGTHS, "gear_ratio")  # the ten variables x of the problem
 _LEAST_OVERLAP = 0.1  # deg
+_ON_EDGE = 1e-12  # m: a pivot that near to the border of the design space is on it, and inside
 _BOUNDS = np.array([(COMPONENTS[name].variable.low, COMPONENTS[name].variable.high) for name in LENGTHS]).T
+_OF_FOUR_BAR = [VARIED.index(name) for name in ("R1x", "R1y", "R2", "R6")]
 _PAIRS = ("knee_deg", "hip_deg")
 _NOT_NEGATIVE = ("gear_ratio_max", "joint_rounding_deg")
 _TABLES = {
     "design_space": ("name", "polygon"),
     "limits": ("crank_min", "rocker_min", "foot_max", "grashof_min", *_PAIRS, *_NOT_NEGATIVE),
-    "search": tuple(name for name in VARIED if name[:2] not in ("R1", "R7") or name == "R10"),
+    "search": tuple(name for name in VARIED if name not in PIVOTS),
 }
 
 
 @dataclass(frozen=True)
 class Limits:
-    """What a problem file says; lengths in m, angles in deg.
+    """What a problem file says; lengths in m, angles in deg. build: limits beside the paper's, if they hold.
 
     polygon: vertices of the design space as complex numbers, shape (vertices,). search: lower and upper bound of
     each of VARIED, shape (10, 2).
@@ -48,16 +54,29 @@ class Limits:
     joint_rounding_deg: float
     gear_ratio_max: float
     search: FloatArray
+    build: BuildLimits | None = None
+
+    def holding(self, pivots: Sequence[complex], room: float) -> "Limits":
+        """With the rectangle around these points, and so much room around them, m, as the design space."""
+        low, high = (complex(end(np.real(pivots)), end(np.imag(pivots))) for end in (np.min, np.max))
+        low, high = low - room * (1 + 1j), high + room * (1 + 1j)
+        corners = np.round([low, complex(high.real, low.imag), high, complex(low.real, high.imag)], 9)
+        bounds = dict(zip(VARIED, self.search, strict=True)) | _pivot_bounds(corners)
+        name = f"within {100 * room:g} cm of the design's own pivots"
+        return replace(self, space=name, polygon=corners, search=np.array([bounds[name] for name in VARIED]))
 
 
-def load_limits(path: Path = DEFAULT) -> Limits:
-    """Read a problem file. Raises InputError naming file, key and value of what is missing, unknown, contradictory."""
+def load_limits(path: Path = DEFAULT, overrides: Mapping[str, float] | None = None) -> Limits:
+    """Read a problem file; overrides: of BuildLimits by key, None for the paper's limits alone.
+
+    Raises InputError naming file, key and value of what is missing, unknown, contradictory.
+    """
     content = read_toml(path, "problem")
     for section, keys in (
         (content, tuple(_TABLES)),
         *((content.section(name), keys) for name, keys in _TABLES.items()),
     ):
-        section.only(keys)
+        section.only((*keys, *KEYS) if section.name == "limits" else keys)
         section.require(keys, f"copy it from the default problem file {DEFAULT.name}")
     space, limits, search = (content.section(name) for name in _TABLES)
     values: dict[str, Any] = {
@@ -68,11 +87,25 @@ def load_limits(path: Path = DEFAULT) -> Limits:
         else limits.number(key)
         for key in _TABLES["limits"]
     }
+    build = {key: limits.number(key, -math.inf) for key in KEYS if key in limits.content}
     polygon, bounds = _polygon(space), {key: search.ascending_pair(key) for key in _TABLES["search"]}
+    bounds |= _pivot_bounds(polygon)
+    return Limits(
+        str(space.content["name"]),
+        polygon,
+        search=np.array([bounds[name] for name in VARIED]),
+        build=None if overrides is None else BuildLimits(**(build | dict(overrides))),
+        **values,
+    )
+
+
+def _pivot_bounds(polygon: ComplexArray) -> dict[str, tuple[float, float]]:
+    """Search ranges of R1 and R7 in a design space, m."""
+    bounds: dict[str, tuple[float, float]] = {}
     for axis, part in (("x", polygon.real), ("y", polygon.imag)):
         width = float(np.ptp(part))
         bounds |= {f"R1{axis}": (float(part.min()), float(part.max())), f"R7{axis}": (-width, width)}
-    return Limits(str(space.content["name"]), polygon, search=np.array([bounds[name] for name in VARIED]), **values)
+    return bounds
 
 
 def _polygon(space: Section) -> ComplexArray:
@@ -96,7 +129,8 @@ def depth_inside(polygon: ComplexArray, points: ComplexArray) -> FloatArray:
     # a ray to the right crosses the border an odd number of times from inside
     spans = (start.imag > points[:, None].imag) != (end.imag > points[:, None].imag)
     crosses = spans & ((np.conj(edge) * arm).imag * np.sign(edge.imag) > 0)
-    return np.asarray(np.where(crosses.sum(axis=1) % 2 == 1, distance, -distance))
+    inside = (crosses.sum(axis=1) % 2 == 1) | (distance < _ON_EDGE)
+    return np.asarray(np.where(inside, distance, -distance))
 
 
 class Constraint(NamedTuple):
@@ -151,12 +185,32 @@ def motion_constraints(
         Constraint("gear_ratio_min", "", True, gear_ratios[0], 0.1),
         Constraint("gear_ratio", "", False, gear_ratios[1], 0.1),
         *([Constraint("speed_ripple", "", False, ripple, 0.05)] if ripple is not None else []),
+        *build_constraints(limits.build),
+    )
+
+
+def build_constraints(build: BuildLimits | None) -> tuple[Constraint, ...]:
+    """Constraints of what can be built, if there are any."""
+    if build is None:
+        return ()
+    return (
+        Constraint("hole_distance", "m", True, build.hole_distance_min, 0.01),
+        Constraint("transmission_angle", "deg", True, build.transmission_angle_min, 5.0),
+        Constraint("hip_swing", "deg", True, build.hip_swing_min, 5.0),
+        Constraint("extrapolated_share", "", False, build.extrapolated_max, 0.1),
+        Constraint("pin_force", "N", False, build.pin_force_max, 500.0),
+        Constraint("clearance", "m", True, build.clearance_min, 0.01),
     )
 
 
 def length_values(design: Design, lengths: FloatArray, polygon: ComplexArray) -> FloatArray:
     """Values of length_constraints for a batch of designs with these lengths, shape (n, 9); returns shape (n, 8)."""
     linkage = design.linkage
+    if linkage.kind == "trt":  # what a four-bar lacks keeps every limit
+        none = np.full(design.size, np.inf)
+        inside = depth_inside(polygon, np.ravel(np.broadcast_to(linkage.ground, (design.size, 1))))
+        own = np.min(np.minimum(lengths - _BOUNDS[0], _BOUNDS[1] - lengths)[:, _OF_FOUR_BAR], axis=1)
+        return np.column_stack([np.ravel(linkage.crank), none, np.ravel(linkage.foot), own, none, none, none, inside])
     others = np.stack([np.abs(linkage.pivot_to_crank), linkage.coupler, linkage.rocker])
     columns = (
         linkage.crank,
@@ -191,6 +245,50 @@ def _overlap(joint: str, turn: Cycles, reference: ReferenceTricycle) -> FloatArr
     return np.where(turn.outside[1][joint], np.minimum(overlap, 0.0), overlap)
 
 
+def build_values(design: Design, turn: Cycles) -> FloatArray:
+    """Values of build_constraints but for force and clearance, in their order, shape (n, 4)."""
+    hip = turn.joints.hip
+    swing, angle = np.degrees(hip.high - hip.low), transmission_angle(design, turn)
+    return np.column_stack([hole_distance(design), angle, swing, turn.outside[0]])
+
+
 def margins(constraints: tuple[Constraint, ...], values: FloatArray) -> FloatArray:
     """How far inside their limits the values are, shape (n, constraints)."""
     return np.column_stack([c.margin(values[:, column]) for column, c in enumerate(constraints)])
+
+
+class Meaning(NamedTuple):
+    """What a limit is on, and where it is set: table and key of a problem file, or an option."""
+
+    words: str
+    where: str
+
+
+_SPACE = "design_space.polygon"
+MEANINGS = {
+    "crank_length": Meaning("length of the crank, R2", "limits.crank_min"),
+    "rocker_length": Meaning("length of the rocker, R10", "limits.rocker_min"),
+    "ankle_to_pedal": Meaning("distance from ankle to pedal, R6", "limits.foot_max"),
+    "lengths_inside": Meaning("how far all lengths are within what a design file may say", "always"),
+    "crank_shortest": Meaning("shortest other link less the crank, which only then turns right round", "always"),
+    "grashof": Meaning("Grashof's margin: how far rocker and coupler stay from a dead centre", "limits.grashof_min"),
+    "rocker_pivot_inside": Meaning("distance of the rocker pivot to the border of the design space", _SPACE),
+    "crank_centre_inside": Meaning("distance of the crank centre to the border of the design space", _SPACE),
+    "leg_reach": Meaning("how far the leg stays from being stretched or folded flat", "always"),
+    **{
+        f"{joint}_{end}": Meaning(f"{size} {joint} angle", f"limits.{joint}_deg")
+        for joint in JOINTS
+        for end, size in (("min", "smallest"), ("max", "largest"))
+    },
+    **{f"{joint}_speed": Meaning(f"mean {joint} speed", f"--{joint}-speed-limit") for joint in JOINTS},
+    **{f"{joint}_overlap": Meaning(f"how far the {joint} comes into the moments' range", "always") for joint in JOINTS},
+    "gear_ratio_min": Meaning("gear ratio, of the slowest cadence that can be run", "always"),
+    "gear_ratio": Meaning("gear ratio: crank turns per turn of the wheel", "limits.gear_ratio_max"),
+    "speed_ripple": Meaning("ripple of the crank's speed", "--ripple-limit"),
+    "hole_distance": Meaning("least distance of two holes in a link", "limits.hole_distance_min"),
+    "transmission_angle": Meaning("smallest transmission angle of any two links", "limits.transmission_angle_min"),
+    "hip_swing": Meaning("how far the hip moves", "limits.hip_swing_min"),
+    "extrapolated_share": Meaning("share of the turn outside the moments' range", "limits.extrapolated_max"),
+    "pin_force": Meaning("largest force on a pin, riding with masses", "limits.pin_force_max"),
+    "clearance": Meaning("least clearance of what moves, in the best layers", "limits.clearance_min"),
+}

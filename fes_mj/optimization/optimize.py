@@ -16,14 +16,19 @@ from fes_mj.common.errors import InputError
 from fes_mj.common.parallel import HERE, Workers, run_tasks
 from fes_mj.common.units import turns_per_second
 from fes_mj.linkage.design import Design
+from fes_mj.linkage.design_file import load_design
 from fes_mj.moments.files import load_moments
 from fes_mj.moments.joint_moments import GROUPS, JointMoments
 from fes_mj.optimization.findings import Findings
+from fes_mj.optimization.limits import MEANINGS, PIVOTS, VARIED
 from fes_mj.optimization.pareto import Front, pareto_front
-from fes_mj.optimization.problem import Evaluation, Problem, make_problem
+from fes_mj.optimization.problem import LENGTH_COUNT, Evaluation, Problem, make_problem
+from fes_mj.optimization.repair import changes, repaired
 from fes_mj.optimization.search import BUDGETS, METHODS, BudgetSpentError, Result, Search, Start
 from fes_mj.statics.cycles import cycles
 from fes_mj.statics.work_table import WorkTable
+
+_AT_EDGE = 0.01  # of a constraint's scale, or of a search range
 
 
 @dataclass(frozen=True, repr=False)
@@ -39,6 +44,7 @@ class Optimum(Brief):
     x: FloatArray
     evaluations: int
     front: Front | None = None
+    repair: str = ""  # what was changed of a start that did not keep the limits
 
     @property
     def brief(self) -> str:
@@ -62,6 +68,24 @@ class Optimum(Brief):
     def violations(self) -> list[dict[str, Any]]:
         """See Problem.violations."""
         return self.problem.violations(self._evaluation)
+
+    @property
+    def edges(self) -> list[str]:
+        """What of the design lies at an edge of where it was looked for: a wider one may have better ones."""
+        margins = self._evaluation.margins[0]
+        of_space = {"crank_length", "rocker_length", "ankle_to_pedal", "rocker_pivot_inside", "crank_centre_inside"}
+        limits = [
+            f"{c.name} is at its limit ({MEANINGS[c.name].where})"
+            for c, margin in zip(self.problem.constraints, margins, strict=True)
+            if c.name in of_space and abs(margin) < _AT_EDGE * c.scale
+        ]
+        ranges = zip(VARIED[:LENGTH_COUNT], self.x, self.problem.search, strict=False)
+        ends = [
+            f"{name} is at the end of its search range (search.{name})"
+            for name, value, (low, high) in ranges
+            if name not in PIVOTS and low < high and min(value - low, high - value) < _AT_EDGE * (high - low)
+        ]
+        return [*limits, *ends]
 
     @property
     def riders(self) -> list[dict[str, float]]:
@@ -90,7 +114,7 @@ class Optimum(Brief):
                 f"{c.name.replace('_', ' ')}, {c.unit}".rstrip(", "),
                 f"{value:.4g}",
                 f"{'>=' if c.at_least else '<='} {c.limit:.4g}",
-                "active" if abs(margin) < 0.01 * c.scale else "",
+                "active" if abs(margin) < _AT_EDGE * c.scale else "",
             )
             for c, value, margin in zip(self.problem.constraints, values, margins, strict=True)
         ]
@@ -130,7 +154,12 @@ def optimize(
     """
     task = make_problem(kind, moments, **problem)
     name = findings.name if findings else f"{kind}-{moments.name}"
-    start = task.variables(task.template) if problem.get("start") else None
+    own = problem.get("like") or problem.get("start")
+    start, repair = None, ""
+    if own and load_design(own).linkage.kind == kind:
+        drawn = task.variables(task.template)
+        start = drawn if task.evaluate(drawn[None]).feasible[0] else repaired(task, drawn, seed)
+        repair = changes(drawn, start)
     with findings.searching(task) if findings else nullcontext():
         if method == "nsga-ii":
             front = _front(task, budget or BUDGETS[method], seed, smooth, findings)
@@ -141,7 +170,7 @@ def optimize(
             task, method, searches=searches, budget=budget, seed=seed, start=start,
             workers=workers, findings=findings, progress=progress,
         )  # fmt: skip
-    return Optimum(task, method, name, results[0].x, sum(result.evaluations for result in results))
+    return Optimum(task, method, name, results[0].x, sum(result.evaluations for result in results), repair=repair)
 
 
 def _front(problem: Problem, budget: int, seed: int, smooth: bool, findings: Findings | None) -> Front:
@@ -169,8 +198,6 @@ def run_searches(
     start: ten variables, feasible; by default random. Searches on a cluster, which may not see the files of findings,
     are kept when finished.
     """
-    if start is not None and (broken := problem.violations_text(start)):
-        raise InputError(f"the start {problem.template.name} is not feasible: {broken}")
     seeds = SeedSequence(seed).spawn(searches)
     outcomes: dict[int, Result | InputError] = {**findings.finished()} if findings else {}
     progress(len(outcomes))

@@ -1,6 +1,7 @@
 """The optimisation problem of the paper's Section 6, once: variables, objective, constraints, for populations."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -12,16 +13,20 @@ from fes_mj.common.arrays import BoolArray, FloatArray
 from fes_mj.common.errors import InputError
 from fes_mj.common.units import RPM, turns_per_second
 from fes_mj.linkage.design import Design
-from fes_mj.linkage.design_file import load_design
+from fes_mj.linkage.design_file import DESIGNS, load_design
 from fes_mj.linkage.joints import JOINTS, PerJoint
-from fes_mj.linkage.variables import VARIABLES, component, replaced
+from fes_mj.linkage.variables import COMPONENTS, VARIABLES, component, replaced
 from fes_mj.moments.joint_moments import JointMoments
+from fes_mj.optimization.buildable import slow_values
 from fes_mj.optimization.evenness import RippleLimit
 from fes_mj.optimization.limits import (
     DEFAULT,
+    MEANINGS,
     VARIED,
     Constraint,
     Limits,
+    build_values,
+    depth_inside,
     length_constraints,
     length_values,
     load_limits,
@@ -30,12 +35,13 @@ from fes_mj.optimization.limits import (
     motion_values,
 )
 from fes_mj.optimization.people import ONE_RIDER, People
-from fes_mj.statics.cycles import CYCLE_POINTS, cycles, joint_speeds
+from fes_mj.statics.cycles import CYCLE_POINTS, Cycles, cycles, joint_speeds
 from fes_mj.statics.work_table import WorkTable, uncertain_table
 
 LENGTH_COUNT = len(VARIED) - 1  # all variables but the gear ratio, which comes last
 # A design below any feasible one, and each margin it was refused too early to have counts as ten scales.
 INFEASIBLE, _UNKNOWN = -1e4, 10.0
+ROOM = 0.15  # m around the pivots of a design whose place is its own
 _HAIR = 1e-12  # keeps a number that is computed again on the same side of its limit
 
 
@@ -82,7 +88,8 @@ class Problem:
     power counts. joint_speed: largest mean absolute speed of each joint, deg/s. caution: with moments as of
     work_table.uncertain_table, how many standard deviations of the gain over `baseline` (power of a design to beat,
     shape (sets,)) are taken off it. people: who else rides it; the limits on joints and their speeds hold for each, and
-    the power is the people's. ripple: of the crank speed when ridden, if it is limited.
+    the power is the people's. ripple: of the crank speed when ridden, if it is limited. moments: for forces on pins, if
+    these are limited.
     """
 
     template: Design
@@ -93,6 +100,7 @@ class Problem:
     baseline: FloatArray | float = 0.0
     people: People = ONE_RIDER
     ripple: RippleLimit | None = None
+    moments: JointMoments | None = None
     points: int = CYCLE_POINTS
 
     def __post_init__(self) -> None:
@@ -183,7 +191,8 @@ class Problem:
             ratios = np.repeat(gear_ratio[sound], riders)
             power[sound] = self.people.power(turn.work * (turns_per_second(cadence) * ratios[:, None]))
             by_rider = motion_values(turn, self.table.measured_on, speeds, ratios)
-            motion[sound] = self._worst(np.column_stack([by_rider, *self._ripple(ridden, by_rider, ratios)]))
+            values = np.column_stack([by_rider, *self._ripple(ridden, by_rider, ratios)])
+            motion[sound] = self._worst(np.column_stack([values, *self._build(ridden, turn, values, ratios)]))
         return Evaluation(np.column_stack([free, gear_ratio]), power, np.hstack([lengths, motion]), self.constraints)
 
     def merit(self, evaluation: Evaluation) -> FloatArray:
@@ -209,7 +218,8 @@ class Problem:
         if evaluation.feasible[0]:
             return ""
         parts = (
-            f"{row['name']} is {row['value']:.4g} {row['unit']}".rstrip() + f" (limit {row['limit']:.4g})"
+            f"{row['name']} is {row['value']:.4g} {row['unit']}".rstrip()
+            + f" (limit {row['limit']:.4g}, set by {MEANINGS[row['name']].where})"
             for row in self.violations(evaluation)
         )
         return ", ".join(parts) or "the thigh swings through 180 deg or more"
@@ -225,6 +235,15 @@ class Problem:
             ripple[within] = self.ripple.ripple(geared.taken(within))
         return [ripple]
 
+    def _build(self, design: Design, turn: Cycles, values: FloatArray, gear_ratio: FloatArray) -> list[FloatArray]:
+        """Where they are limited, what can be built of a batch; what takes long only of those that keep the rest."""
+        if not self.limits.build or not self.moments:
+            return []
+        values = np.column_stack([values, build_values(design, turn)])
+        within = np.all(margins(self.motion[: values.shape[1]], values) >= 0, axis=1)
+        geared = design.with_linkage(gear_ratio=gear_ratio[:, None])
+        return [values[:, -4:], slow_values(geared, within, self.limits.build, self.moments)]
+
     def _worst(self, values: FloatArray) -> FloatArray:
         """Of each constraint on the turn over all riders, shape (n, constraints); values: (n * riders, constraints)."""
         riders = values.reshape(-1, self.people.count, values.shape[1])
@@ -237,29 +256,46 @@ def make_problem(
     *,
     compared_with: str = "trt",
     start: str | None = None,
+    like: str | None = None,
     limits: Path = DEFAULT,
+    build: Mapping[str, float] | None = None,
     knee_speed: float | None = None,
     hip_speed: float | None = None,
     caution: float = 0.0,
     ripple: float | None = None,
     people: People = ONE_RIDER,
 ) -> Problem:
-    """The problem for a kind of six-bar ("crt", "cdt") under joint moments.
+    """The problem for a kind of linkage ("crt", "cdt", "trt") under joint moments.
 
     compared_with: the design whose mean joint speeds are the limits (unless given, deg/s) and whose power is the
     baseline. ripple: largest of the crank speed when ridden. start: a design whose rider, seat and coupler angle are
-    kept; by default a printed one. limits: a problem file. caution, people: see Problem. Raises InputError for what
-    cannot be used, and for a start of another kind.
+    kept; by default a printed one, with the rider and the seat of compared_with if that is a file. like: stands for
+    both, and its gear ratio is the largest. limits: a problem file, whose design space is that around the start's
+    pivots if they are outside of the default one. build: of BuildLimits, see load_limits. caution, people: see Problem.
+    Raises InputError for what cannot be used, and for a start of another kind.
     """
-    template = load_design(start or ("r1" if kind == "crt" else "d1"))
-    if template.linkage.kind != kind:
-        raise InputError(
-            f"--start {start} is a {template.linkage.kind}, not a {kind}; start from a design of that kind"
-        )
+    compared_with, start = like or compared_with, like or start
+    own = load_design(start or compared_with)
+    template = load_design({"crt": "r1", "cdt": "d1", "trt": "trt"}[kind])
+    if own.linkage.kind == kind and start:
+        template = own
+    elif start and not like:
+        raise InputError(f"--start {start} is a {own.linkage.kind}, not a {kind}; start from a design of that kind")
+    elif like or compared_with not in DESIGNS:
+        template = replace(template, rider=own.rider).with_linkage(seat_angle=own.linkage.seat_angle)
+    known = load_limits(limits, build)
+    pivots = [template.linkage.ground, template.linkage.crank_centre]
+    if limits == DEFAULT and depth_inside(known.polygon, np.array(pivots)).min() < 0:
+        known = known.holding(pivots, ROOM)
+    if like:
+        known = replace(known, gear_ratio_max=own.linkage.gear_ratio)
+    if kind == "trt":
+        absent = [kind not in COMPONENTS[name].variable.kinds for name in VARIED]
+        known = replace(known, search=np.where(np.array(absent)[:, None], 0.0, known.search))
     other, table = load_design(compared_with), uncertain_table(moments) if caution else WorkTable.of(moments)
     # a hair above, so that the design itself is within its own limits
-    own, asked = joint_speeds(other, table).map(lambda speed: speed * (1 + 1e-9)), PerJoint(knee_speed, hip_speed)
-    speed = PerJoint(*(speed if limit is None else limit for speed, limit in zip(own, asked, strict=True)))
+    speeds, asked = joint_speeds(other, table).map(lambda speed: speed * (1 + 1e-9)), PerJoint(knee_speed, hip_speed)
+    speed = PerJoint(*(speed if limit is None else limit for speed, limit in zip(speeds, asked, strict=True)))
     baseline = cycles(other, table).work[0] * turns_per_second(other.linkage.cadence)
     even = None if ripple is None else RippleLimit(ripple, moments)
-    return Problem(template, table, load_limits(limits), speed, caution, baseline, people, even)
+    return Problem(template, table, known, speed, caution, baseline, people, even, moments)

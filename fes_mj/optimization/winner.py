@@ -1,6 +1,6 @@
 """What a found design is worth: simulated, compared with the design it had to beat, sampled for tolerance."""
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -12,6 +12,7 @@ from fes_mj.linkage.design import Design
 from fes_mj.linkage.joints import PerJoint
 from fes_mj.linkage.variables import lengths, with_lengths
 from fes_mj.moments.joint_moments import JointMoments
+from fes_mj.optimization.buildable import Buildability
 from fes_mj.riding.ride import Ride, steady_ripple
 from fes_mj.statics.cycles import cycles, joint_speeds
 from fes_mj.statics.turn import difference_sd, quasi_static
@@ -94,6 +95,7 @@ class Winner:
     gain: Gain | None
     manufacturing: Tolerance
     rider: Tolerance
+    build: Buildability
 
     @property
     def design(self) -> Design:
@@ -136,6 +138,7 @@ class Winner:
             ("the same, peak to peak, W", f"{swing:.0f}"),
             ("ripple of the crank speed, two legs, fixed gear, %", f"{100 * self.ripple:.1f}"),
             ("reversals of knee and hip in a turn", f"{self.reversals.knee}, {self.reversals.hip}"),
+            *self.build.rows,
         ]
         if self.gain:
             cells.append((f"gain over {self.compared_with.name}, W", "{:+.2f} ± {:.2f}".format(*self.gain)))
@@ -168,6 +171,9 @@ class Winner:
             "tolerance_manufacturing": self.manufacturing._asdict(),
             "tolerance_rider": self.rider._asdict(),
             "design_space": problem.limits.space,
+            **asdict(self.build),
+            "doubts": [*self.build.doubts(), *optimum.edges],
+            "repair": optimum.repair or None,
         }
         if problem.people.count > 1:
             content |= {"power_people_W": optimum.power, "riders": optimum.riders}
@@ -188,4 +194,5 @@ def assess(design: Design, compared_with: Design, moments: JointMoments, seed: i
         gain=None if deviation is None else Gain(own.power_mean - other.power_mean, deviation),
         manufacturing=to_manufacturing(design, table, random),
         rider=to_rider(design, table, random),
+        build=Buildability.of(own),
     )

@@ -16,9 +16,10 @@ from fes_mj.optimization.findings import Findings
 from fes_mj.optimization.limits import DEFAULT
 from fes_mj.optimization.search import Result
 
-QUICK = ["--budget", "6000", "--searches", "1", "--seed", "2"]
+PAPER = ["--limits", "paper"]  # without forces and clearances, which take long
+QUICK = ["--budget", "6000", "--searches", "1", "--seed", "2", *PAPER]
 # from a feasible start: where the file and not the search is looked at
-FROM_D1 = ["--start", "d1", "--speeds-of", "d1", "--budget", "1000", "--seed", "2"]
+FROM_D1 = ["--start", "d1", "--speeds-of", "d1", "--budget", "1000", "--seed", "2", *PAPER]
 
 
 def test_the_winner_is_what_the_other_commands_see(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -68,7 +69,7 @@ def test_the_default_speed_limit_is_that_of_the_trt(capsys: pytest.CaptureFixtur
 @pytest.mark.long
 def test_riders_of_a_population_are_listed_with_their_seats(capsys: pytest.CaptureFixture[str]) -> None:
     people = ["--riders", "population", "--samples", "50", "--sample-seed", "1"]
-    search = ["optimize", "crt", "--budget", "12000", "--searches", "1", *people]
+    search = ["optimize", "crt", "--budget", "12000", "--searches", "1", *people, *PAPER]
     assert run([*search, "--json"]) == 0
     content = json.loads(capsys.readouterr().out)
     assert content["feasible"]
@@ -86,7 +87,10 @@ def test_a_front_beside_the_design(tmp_path: Path, capsys: pytest.CaptureFixture
     pytest.importorskip("pymoo")
     out = tmp_path / "front.toml"
     assert (
-        run(["optimize", "cdt", "--method", "nsga-ii", "--smooth", "--budget", "4000", "-o", str(out), "--json"]) == 0
+        run(
+            ["optimize", "cdt", "--method", "nsga-ii", "--smooth", "--budget", "4000", *PAPER, "-o", str(out), "--json"]
+        )
+        == 0
     )
     content = json.loads(capsys.readouterr().out)
     lines = (tmp_path / "front-front.csv").read_text().splitlines()
@@ -115,9 +119,10 @@ def test_own_moments_have_no_error_bar(tmp_path: Path, capsys: pytest.CaptureFix
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (["cdt", "--start", "d1"], "the start d1 is not feasible: knee_speed is 164.6 deg/s (limit 107.1)"),
+        (["cdt", "--like", "d1", "--start", "d2"], "--like takes the place of --start and --speeds-of"),
+        (["cdt", "--limits", "paper", "--hip-swing-min", "3"], "--hip-swing-min is none of the paper's limits"),
+        (["cdt", "--pin-force-max", "0"], '"0.0" for --pin-force-max. Must be > 0.'),
         (["crt", "--start", "d1"], "--start d1 is a cdt, not a crt"),
-        (["crt", "--start", "r2", "--speeds-of", "r2"], "the start r2 is not feasible: grashof is"),
         (["cdt", "--knee-speed-limit", "-3"], '"-3.0" for --knee-speed-limit. Must be > 0.'),
         (["cdt", "--hip-speed-limit", "nan"], '"nan" for --hip-speed-limit'),
         (["cdt", "--seed", "-1"], '"-1" for --seed. Must be >= 0.'),
@@ -130,10 +135,6 @@ def test_own_moments_have_no_error_bar(tmp_path: Path, capsys: pytest.CaptureFix
         (["cdt", "--problem", "missing.toml"], "missing.toml: cannot read the problem"),
         (["cdt", "--ripple-limit", "0"], '"0.0" for --ripple-limit. Must be > 0.'),
         (["cdt", "--ripple-limit", "nan"], '"nan" for --ripple-limit'),
-        (
-            ["cdt", "--start", "d1", "--speeds-of", "d1", "--ripple-limit", "10"],
-            "is not feasible: speed_ripple is 0.16",
-        ),
         (["cdt", "--samples", "100"], "--samples needs --riders"),
         (["cdt", "--riders", "population", "--samples", "1"], '"1" for --samples. Must be >= 10.'),
         (["cdt", "--riders", "population", "--sample-seed", "-1"], '"-1" for --sample-seed. Must be >= 0.'),
@@ -301,3 +302,67 @@ def test_a_missing_extra_is_named(monkeypatch: pytest.MonkeyPatch, capsys: pytes
     monkeypatch.setitem(sys.modules, "cma", None)
     assert run(["optimize", "crt", "--method", "cma-es", *QUICK]) == 3
     assert "pip install 'fes-mj[optimize]'" in capsys.readouterr().err.replace("\n", " ")
+
+
+OWN = """
+[linkage]
+kind = "cdt"
+R1 = [-0.55, 0.18]
+R2 = 0.14
+R6 = 0.09
+R7 = [-0.20, 0.10]
+R8 = 0.10
+R9 = 0.27
+R10 = 0.24
+gamma = 75
+gear_ratio = 1.8
+seat_angle = 38.0
+[rider]
+thigh = 0.44
+shank = 0.50
+mass = 82
+"""
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(
+    "flags", [["--like", "FILE"], ["--start", "FILE", "--speeds-of", "FILE"], ["--speeds-of", "FILE"]]
+)
+def test_a_search_begins_where_the_designer_stands(
+    flags: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Rider, seat and place are one's own; a start that does not keep the limits is repaired, and that is said."""
+    own, out = tmp_path / "own.toml", tmp_path / "found.toml"
+    own.write_text(OWN)
+    command = ["optimize", "cdt", *(word.replace("FILE", str(own)) for word in flags), "--budget", "1000"]
+    assert run([*command, "--searches", "1", "-o", str(out), "--json"]) == 0
+    content, drawn, found = json.loads(capsys.readouterr().out), fes_mj.load_design(own), fes_mj.load_design(out)
+    assert content["feasible"]
+    assert found.rider == drawn.rider
+    assert found.linkage.seat_angle == drawn.linkage.seat_angle
+    assert content["transmission_angle_min_deg"] >= 30
+    assert content["hip_swing_deg"] >= 5
+    assert content["extrapolated_share"] == 0
+    assert content["pin_force_max_N"] <= 1500
+    assert content["clearance_min_m"] >= 0.004  # between the angles of the search 0.3 mm less
+    if flags != ["--speeds-of", "FILE"]:
+        assert abs(found.linkage.ground - drawn.linkage.ground) < 0.15 * math.sqrt(2) + 0.2
+        assert "R9" in content["repair"]
+    if "--like" in flags:
+        assert found.linkage.gear_ratio <= 1.8
+
+
+def test_the_problem_that_is_solved_is_printed_and_read_again(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    own = tmp_path / "own.toml"
+    own.write_text(OWN)
+    assert run(["optimize", "cdt", "--like", str(own), "--clearance-min", "0.008", "--print-problem"]) == 0
+    printed = capsys.readouterr().out
+    assert "clearance_min = 0.008" in printed
+    assert "thigh 0.44 m, shank 0.5 m" in printed
+    (tmp_path / "mine.toml").write_text(printed)
+    assert (
+        run(["optimize", "cdt", "--like", str(own), "--problem", str(tmp_path / "mine.toml"), "--print-problem"]) == 0
+    )
+    assert capsys.readouterr().out == printed

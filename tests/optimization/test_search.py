@@ -29,14 +29,6 @@ def test_an_empty_feasible_set_is_said_to_be_one() -> None:
         run_searches(impossible, "differential-evolution", budget=2000)
 
 
-def test_an_infeasible_start_is_refused_by_name() -> None:
-    problem = problem_of("d1")
-    start = problem.variables(problem.template)
-    start[2] = 0.5
-    with pytest.raises(fes_mj.InputError, match=r"d1 .*grashof is -0.\d+ m \(limit 0"):
-        run_searches(problem, "random-pursuit", start=start)
-
-
 @pytest.mark.parametrize("name", SIX_BARS)
 def test_random_pursuit_never_gets_worse_and_stays_feasible(name: str) -> None:
     problem = problem_of(name)
