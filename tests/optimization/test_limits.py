@@ -19,6 +19,14 @@ def test_depth_inside_a_polygon() -> None:
     assert depth_inside(square[::-1], points) == pytest.approx([0.5, 0.1, -0.2, -np.sqrt(2)])
 
 
+def test_a_pivot_on_the_edge_is_inside() -> None:
+    """On every edge and corner of the default space, whatever rounding makes of its distance."""
+    polygon = load_limits().polygon
+    ends, parts = np.roll(polygon, -1), np.linspace(0, 1, 41)
+    edges = (polygon[:, None] + parts * (ends - polygon)[:, None]).ravel()
+    assert depth_inside(polygon, np.array([*edges, -0.60 + 0.20j])).min() >= 0
+
+
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
