@@ -11,6 +11,7 @@ from typing import Any
 
 from fes_mj.common.brief import Brief
 from fes_mj.common.errors import InputError
+from fes_mj.fit.ground import above_ground, underground
 from fes_mj.fit.search import best_seats
 from fes_mj.fit.seats import SEAT_LIMITS, SeatLimits, Seats
 from fes_mj.linkage.design import Design, Rider
@@ -112,15 +113,19 @@ def fit_seat(design: Design, rider: Rider, moments: JointMoments, limits: SeatLi
     <SeatFit d1 p1p2: 9.6 cm towards the crank, 8.3 cm up, seat angle +3.3 deg>
     """
     crank_speed(design)
+    limits = above_ground(design, limits)
     seats, _ = best_seats(design, [rider.thigh], [rider.shank], WorkTable.of(moments), limits)
     seat, why = Seats(*(float(move[0]) for move in seats)), None
     seated = replace(design, rider=rider)
     if any(seat):
-        seated = _in_workshop_digits(seat.moved(seated))
+        seated = replace(_in_workshop_digits(seat.moved(seated)), frame=design.frame.moved(complex(seat.shift)))
+    static = None
     try:
-        static = quasi_static(seated, moments)
+        turn = quasi_static(seated, moments)
+        if not (why := underground(seated)):
+            static = turn
     except InputError as error:
-        static, why = None, str(error)
+        why = str(error)
     return SeatFit(design, rider, moments, limits, seat, seated, static, why)
 
 

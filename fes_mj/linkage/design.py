@@ -150,6 +150,15 @@ class Frame:
     wheel_centre: complex | None = None
     ground_height: float | None = None
 
+    def moved(self, by: complex) -> "Frame":
+        """As seen from a hip from which all of it has moved by so much."""
+        return replace(
+            self,
+            tube=self.tube and (self.tube[0] + by, self.tube[1] + by),
+            wheel_centre=None if self.wheel_centre is None else self.wheel_centre + by,
+            ground_height=None if self.ground_height is None else self.ground_height + by.imag,
+        )
+
 
 @dataclass(frozen=True)
 class Design:
