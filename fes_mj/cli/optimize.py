@@ -91,8 +91,12 @@ def optimize(
 
 
 def _search(kind: str, moments: fes_mj.JointMoments, options: SearchOptions, findings: Findings | None) -> Optimum:
-    """The best of all searches, with a bar that counts them."""
-    with progress_bar(f"{options.method}, searches", options.searches, options.silent) as advance:
+    """The best of all searches, with a bar that counts evaluations and says how long they take."""
+    from fes_mj.optimization.search import BUDGETS
+
+    searches = 1 if options.method == "nsga-ii" else options.searches
+    total = searches * (options.budget or BUDGETS[options.method])
+    with progress_bar(f"{options.method}, evaluations", total, options.silent) as advance:
         return fes_mj.optimize(
             kind,
             moments,

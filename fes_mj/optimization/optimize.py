@@ -144,7 +144,7 @@ def optimize(
     one and weighs the powers of both rider groups and, if `smooth`, the least fluctuation of energy. budget:
     evaluations of each search, by default search.BUDGETS. seed: the same one finds the same design, wherever the
     searches run. findings: where results are kept, and finished ones taken from. progress is told how many more
-    searches are done. problem: limits, start, people: the arguments of make_problem.
+    of the budgets' evaluations are behind. problem: limits, start, people: the arguments of make_problem.
 
     Raises InputError for what make_problem refuses, an infeasible start, and if no search finds anything feasible;
     MissingPartError without the package of the method.
@@ -163,7 +163,7 @@ def optimize(
     with findings.searching(task) if findings else nullcontext():
         if method == "nsga-ii":
             front = _front(task, budget or BUDGETS[method], seed, smooth, findings)
-            progress(searches)
+            progress(BUDGETS[method] if budget is None else budget)
             best = front.x[int(np.argmax(front.power.mean(axis=1)))]
             return Optimum(task, method, name, best, front.evaluations, front)
         results = run_searches(
@@ -200,15 +200,17 @@ def run_searches(
     """
     seeds = SeedSequence(seed).spawn(searches)
     outcomes: dict[int, Result | InputError] = {**findings.finished()} if findings else {}
-    progress(len(outcomes))
+    budget, here = budget or BUDGETS[method], workers.jobs == 1 and not workers.cluster
+    progress(budget * len(outcomes))
     missing = [number for number in range(searches) if number not in outcomes]
     kept_at_once = None if workers.cluster else findings
-    task = partial(search_once, problem, method, budget or BUDGETS[method], start, kept_at_once)
+    task = partial(search_once, problem, method, budget, start, kept_at_once, progress if here else None)
     for index, outcome in run_tasks(task, [(number, seeds[number]) for number in missing], workers):
         outcomes[missing[index]] = outcome
         if findings and isinstance(outcome, Result):
             findings.finish(missing[index], outcome)
-        progress(1)
+        done = outcome.evaluations if here and isinstance(outcome, Result) else budget if here else 0
+        progress(budget - done)
     ordered = [outcomes[number] for number in range(searches)]
     results = [outcome for outcome in ordered if isinstance(outcome, Result)]
     if not results:
@@ -217,11 +219,17 @@ def run_searches(
 
 
 def search_once(
-    problem: Problem, method: str, budget: int, start: Start, findings: Findings | None, task: tuple[int, SeedSequence]
+    problem: Problem,
+    method: str,
+    budget: int,
+    start: Start,
+    findings: Findings | None,
+    counted: Callable[[int], None] | None,
+    task: tuple[int, SeedSequence],
 ) -> Result | InputError:
     """One search, by its number and its own random numbers; an error, as a value, if nothing feasible turned up."""
     number, seed = task
-    search = Search(problem, budget, partial(findings.improve, number) if findings else None)
+    search = Search(problem, budget, partial(findings.improve, number) if findings else None, counted)
     with suppress(BudgetSpentError):
         METHODS[method](search, start, np.random.default_rng(seed))
     try:

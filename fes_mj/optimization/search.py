@@ -46,14 +46,20 @@ class Result:
 class Search:
     """Evaluates populations for a method, counts, remembers the best. Raises BudgetSpentError at the budget's end.
 
-    improved: told of every feasible design that is better than all before.
+    improved: told of every feasible design that is better than all before. counted: of how many were evaluated.
     """
 
-    def __init__(self, problem: Problem, budget: int, improved: Improved | None = None) -> None:
+    def __init__(
+        self,
+        problem: Problem,
+        budget: int,
+        improved: Improved | None = None,
+        counted: Callable[[int], None] | None = None,
+    ) -> None:
         self.problem, self.budget, self.evaluations = problem, budget, 0
         self.best_x, self.best = np.full(len(problem.search), np.nan), -np.inf
         self._history: list[tuple[int, float]] = []
-        self._improved = improved
+        self._improved, self._counted = improved, counted
 
     def __call__(self, x: FloatArray) -> FloatArray:
         """Merit of each row of x, shape (n, variables) or without gear ratios; see Problem.evaluate."""
@@ -76,6 +82,8 @@ class Search:
             if self._improved and self.best > INFEASIBLE:
                 self._improved(self.best_x, self.best)
         self.evaluations += len(merit)
+        if self._counted:
+            self._counted(len(merit))
 
     def result(self) -> Result:
         """The best design so far. Raises InputError, saying what stood in the way, if none was feasible."""

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import fes_mj
+from fes_mj.common.parallel import Workers
 from fes_mj.optimization.optimize import METHODS, optimize, run_searches
 from fes_mj.optimization.problem import make_problem
 from tests.optimization.conftest import problem_of
@@ -49,3 +50,14 @@ def test_processes_find_the_same_design() -> None:
     serial = run_searches(problem, "differential-evolution", searches=2, budget=2000, seed=1)
     parallel = run_searches(problem, "differential-evolution", searches=2, budget=2000, seed=1, workers=Workers(jobs=2))
     assert [result.merit for result in serial] == [result.merit for result in parallel]
+
+
+@pytest.mark.parametrize("jobs", [1, pytest.param(2, marks=pytest.mark.process)])
+def test_progress_counts_the_evaluations_of_all_searches(jobs: int) -> None:
+    """In this process as they are made, elsewhere when a search is through; at the end all of them."""
+    told: list[int] = []
+    fes_mj.optimize(
+        "crt", fes_mj.load_moments("p1p2"), budget=1000, searches=2, workers=Workers(jobs), progress=told.append
+    )
+    assert sum(told) == 2000
+    assert (max(told) < 1000) == (jobs == 1)
