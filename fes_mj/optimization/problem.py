@@ -1,7 +1,7 @@
 """The optimisation problem of the paper's Section 6, once: variables, objective, constraints, for populations."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -158,12 +158,18 @@ class Problem:
         """The designs of a population, shape (n, variables) or without gear ratios, as a batch."""
         gear_ratio = x[:, -1] if x.shape[1] == len(self.search) else np.ones(len(x))
         values = np.column_stack([x[:, :LENGTH_COUNT], gear_ratio])
-        return replaced(self.template, dict(zip(VARIED, values.T[..., None], strict=True)))
+        return self._replaced(values.T[..., None])
 
     def design(self, x: FloatArray, name: str) -> Design:
         """One design, with the template's rider, from its variables, shape (variables,)."""
         values = [*x[:LENGTH_COUNT].tolist(), float(x[-1])]
-        return replace(replaced(self.template, dict(zip(VARIED, values, strict=True))), name=name)
+        return replace(self._replaced(values), name=name)
+
+    def _replaced(self, values: Iterable[Any]) -> Design:
+        """The template with values for VARIED, but for what its kind lacks."""
+        kind = self.template.linkage.kind
+        known = {name: value for name, value in zip(VARIED, values, strict=True) if kind in _kinds(name)}
+        return replaced(self.template, known)
 
     def evaluate(self, x: FloatArray) -> Evaluation:
         """Power and constraints of a population, shape (n, variables).
@@ -250,6 +256,11 @@ class Problem:
         return np.asarray(np.where([c.at_least for c in self.motion], riders.min(axis=1), riders.max(axis=1)))
 
 
+def _kinds(name: str) -> tuple[str, ...]:
+    """Of linkages that have a component."""
+    return COMPONENTS[name].variable.kinds
+
+
 def make_problem(
     kind: str,
     moments: JointMoments,
@@ -290,7 +301,7 @@ def make_problem(
     if like:
         known = replace(known, gear_ratio_max=own.linkage.gear_ratio)
     if kind == "trt":
-        absent = [kind not in COMPONENTS[name].variable.kinds for name in VARIED]
+        absent = [kind not in _kinds(name) for name in VARIED]
         known = replace(known, search=np.where(np.array(absent)[:, None], 0.0, known.search))
     other, table = load_design(compared_with), uncertain_table(moments) if caution else WorkTable.of(moments)
     # a hair above, so that the design itself is within its own limits

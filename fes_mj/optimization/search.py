@@ -150,7 +150,8 @@ def cma_es(search: Search, start: Start, random: np.random.Generator) -> None:
             "verbose": -9,
             "tolfun": 1e-6,
         }
-        strategy = cma.CMAEvolutionStrategy(np.clip((x0[:-1] - low) / (high - low), 0, 1), CMA_SIGMA, options)
+        width = np.where(high > low, high - low, 1.0)  # a variable that a linkage lacks has none
+        strategy = cma.CMAEvolutionStrategy(np.clip((x0[:-1] - low) / width, 0, 1), CMA_SIGMA, options)
         while not strategy.stop():
             trials = np.array(strategy.ask())
             strategy.tell(trials, -search(low + trials * (high - low)))

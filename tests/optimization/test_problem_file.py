@@ -30,6 +30,17 @@ def test_every_limit_says_what_it_is_and_where_it_is_set() -> None:
         assert {constraint.name for constraint in problem.constraints} == MEANINGS.keys()
 
 
+@pytest.mark.parametrize("method", ["cma-es", "random-pursuit", "differential-evolution"])
+def test_a_four_bar_stays_one(method: str) -> None:
+    """What it lacks stays 0, however a method moves its variables."""
+    if method == "cma-es":
+        pytest.importorskip("cma")
+    found = fes_mj.optimize("trt", MOMENTS, method=method, budget=1000, searches=1).design
+    absent = ("pivot_to_crank", "pedal_arm", "coupler", "rocker")
+    assert [getattr(found.linkage, name) for name in absent] == [0, 0, 0, 0]
+    assert found.linkage.kind == "trt"
+
+
 def test_a_design_is_within_the_limits_of_its_own_problem() -> None:
     """The TRT of the paper, in its own place at its own speed, is feasible: the yardstick begins there."""
     problem = make_problem("trt", MOMENTS, like="trt", build={})
