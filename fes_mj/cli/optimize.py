@@ -149,7 +149,7 @@ def _write(optimum: Optimum, origin: str, out: Path, options: SearchOptions) -> 
 def _print(winner: Winner, optimum: Optimum) -> None:
     """Tables of what was found, and notes on what to beware of."""
     front, design, people = optimum.front, winner.design, optimum.problem.people
-    if doubts := [*winner.build.doubts(), *optimum.edges]:
+    if doubts := winner.doubts(optimum):
         conclude(False, "Beware", f": {'; '.join(doubts)}.")
     if optimum.repair:
         say(f"the start did not keep the limits and was repaired: {optimum.repair}")

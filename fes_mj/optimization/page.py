@@ -27,6 +27,7 @@ def page_html(winner: Winner, optimum: Optimum, origin: str) -> str:
     return page(
         Path(__file__).with_name("page.html.j2"),
         winner=winner,
+        doubts=winner.doubts(optimum),
         origin=origin.splitlines(),
         constraints=optimum.limit_rows,
         space=optimum.problem.limits.space,

@@ -147,6 +147,10 @@ class Winner:
             cells.append((f"{name}: 5th percentile of power, W", f"{tolerance.power_low:.2f}"))
         return cells
 
+    def doubts(self, optimum: "Optimum") -> list[str]:
+        """Why it may not be what was sought: what it leaves of the limits of what can be built, edges of the search."""
+        return [*self.build.doubts(), *optimum.edges]
+
     def summary(self, optimum: "Optimum") -> dict[str, Any]:
         """The result as JSON names and units it; optimum: of the search that found the design."""
         problem, case, static = optimum.problem, self.case, self.case.static.summary()
@@ -172,7 +176,7 @@ class Winner:
             "tolerance_rider": self.rider._asdict(),
             "design_space": problem.limits.space,
             **asdict(self.build),
-            "doubts": [*self.build.doubts(), *optimum.edges],
+            "doubts": self.doubts(optimum),
             "repair": optimum.repair or None,
         }
         if problem.people.count > 1:
