@@ -30,6 +30,7 @@ def spikes(values: FloatArray) -> BoolArray:
     around = np.lib.stride_tricks.sliding_window_view(np.pad(values, _WINDOW // 2, mode="wrap"), _WINDOW)
     middle = np.median(around, axis=1)
     spread = _NORMAL * np.median(np.abs(around - middle[:, None]), axis=1)
+    spread = np.maximum(spread, np.median(spread))  # seven samples of noise can happen to lie close together
     low, high = np.quantile(values, [0.05, 0.95])
     away = np.abs(values - middle)
     return np.asarray((away > _SPIKE * spread) & (away > _LEAST_SPIKE * (high - low)))

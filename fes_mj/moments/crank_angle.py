@@ -16,6 +16,7 @@ _KNOTS = 10  # of a turn
 _STIFFNESS = 3e-4
 _STEPS = 10  # of Gauss and Newton
 _LEAST_SWING = 0.5  # of the knee's whole range: smaller dips are noise
+_EDGE = 0.05  # of a turn
 _FINE = 20  # times a sample at which the dead centres are looked for
 
 
@@ -46,15 +47,18 @@ class TimedTurn:
 def timed_turns(time: FloatArray, knee: FloatArray, measured_on: ReferenceTricycle) -> list[TimedTurn]:
     """The whole turns of a trial by its knee angle (rad, growing in extension, shape (n,)); there may be none."""
     tops, bottoms = _peaks(-knee), _peaks(knee)
+    if len(tops) > 1:  # at an end of the recording noise makes dead centres of a cut one
+        edge = _EDGE * np.median(np.diff(time[tops]))
+        tops, bottoms = (
+            peaks[(time[peaks] - time[0] > edge) & (time[-1] - time[peaks] > edge)] for peaks in (tops, bottoms)
+        )
     if len(tops) < 2:
         return []
     angle = _crank_angle(time, knee, tops, bottoms, measured_on)
     fine = np.linspace(time[0], time[-1], _FINE * len(time))
     turned = np.maximum.accumulate(angle(fine)) / (2 * np.pi)
-    whole = np.arange(np.ceil(turned[0]), np.floor(turned[-1]) + 1)
-    starts = np.interp(whole, turned, fine)
-    pairs = zip(pairwise(starts.tolist()), whole.tolist(), strict=False)
-    return [TimedTurn(start, end, angle, int(number)) for (start, end), number in pairs]
+    starts = np.interp(np.arange(len(tops)), turned, fine).tolist()  # angles are counted from the first top
+    return [TimedTurn(start, end, angle, number) for number, (start, end) in enumerate(pairwise(starts))]
 
 
 def _crank_angle(

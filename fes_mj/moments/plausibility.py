@@ -104,16 +104,13 @@ def _time(turns: Sequence[Turn], declared: ReferenceTricycle, cadence_said: bool
     )  # fmt: skip
     if any(turn.crank_speed for turn in turns):
         slow, fast = crank_speeds(turns)
-        yield Comparison(
-            "goes_back", "crank speed within the turn", f"{slow * cadence / RPM:.0f} to {fast * cadence / RPM:.0f} rpm",
-            "as the knee has it", slow > 0, "the crank stands or goes back within a turn: cut it out",
-        )  # fmt: skip
-    else:
-        back = max(_setback(turn.crank_angle) for turn in turns)
-        yield Comparison(
-            "goes_back", "crank goes back by", f"{back:.0f} deg", f"up to {_SETBACK:g} expected", back <= _SETBACK,
-            "a turn that goes back is none: cut it out",
-        )  # fmt: skip
+        speeds = f"{slow * cadence / RPM:.0f} to {fast * cadence / RPM:.0f} rpm"
+        yield Comparison("crank_speed", "crank speed within the turn", speeds, "followed by the knee", True)
+    back = max(_setback(turn.crank_angle if turn.pose is None else turn.pose) for turn in turns)
+    yield Comparison(
+        "goes_back", "crank goes back by", f"{back:.0f} deg", f"up to {_SETBACK:g} expected", back <= _SETBACK,
+        "a turn that goes back is none: cut it out",
+    )  # fmt: skip
 
 
 def _setback(angle: FloatArray) -> float:

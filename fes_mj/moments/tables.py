@@ -5,7 +5,6 @@ import re
 from collections import Counter
 from collections.abc import Collection
 from dataclasses import dataclass, replace
-from difflib import get_close_matches
 from functools import cached_property
 from pathlib import Path
 from typing import NoReturn
@@ -58,6 +57,8 @@ class Table:
     def cells(self, name: str) -> list[str]:
         """A column as text. Raises InputError naming file, line and column, and what is nearly it."""
         if name not in self.header:
+            from difflib import get_close_matches
+
             known = ", ".join(self.header) or "nothing"
             near = get_close_matches(name.lower(), [column.lower() for column in self.header], 1)
             meant = [column for column in self.header if [column.lower()] == near]

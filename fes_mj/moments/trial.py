@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Collection
-from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -90,41 +89,24 @@ def _whole(turned: FloatArray) -> int:
     return int((turned[-1] + middle) / (2 * np.pi) + 1e-6)
 
 
-class _Cause(NamedTuple):
-    """What a column of crank angles can be instead: whether it looks so, and what to do."""
-
-    looks: Any
-    advice: str
-
-
 def likely_cause(values: FloatArray) -> str:
-    """Why numbers that are declared as a crank angle go through no whole turn; "" if nothing is known."""
-    steps = np.diff(values)
-    top, back = float(values.max()), steps[steps < 0]
-    falls = back[back < -0.5 * np.ptp(values)] if np.ptp(values) else back
+    """Why numbers that are declared as a crank angle in degrees go through no whole turn; "" if nothing is known."""
+    low, high, steps = float(values.min()), float(values.max()), np.diff(values)
+    back = np.sort(-steps[steps < 0])
+    fall = float(back[len(back) // 2]) if len(back) else 0.0
     causes = (
-        _Cause({*values.tolist()} <= {0.0, 1.0}, "it is 0 and 1 only: an index pulse? Name the column of the angle"),
-        _Cause(
-            abs(values).max() <= 1.0,
-            'all are within 1: whole turns? angle_unit = "turn"',
+        ({*values.tolist()} <= {0.0, 1.0}, "it is 0 and 1 only: an index pulse? Name the column of the angle"),
+        (max(-low, high) <= 1, 'all are within 1: whole turns? angle_unit = "turn"'),
+        (max(-low, high) < 2 * math.pi + 0.01, f'all are below {high:.3g}: radians? angle_unit = "rad"'),
+        (80 < fall <= 100, f'it falls back from {high:.3g}: per cent of the turn? angle_unit = "percent"'),
+        (
+            160 < fall < 200,
+            f"it falls back by {fall:.0f} deg: two turns of the signal a turn of the crank? Double and unwrap it first",
         ),
-        _Cause(
-            abs(values).max() < 2 * math.pi + 0.01,
-            f'all are below {top:.3g}: radians? angle_unit = "rad"',
-        ),
-        _Cause(
-            80 < top <= 100 and len(falls) > 0,
-            f'it falls back from {top:.3g}: per cent of the turn? angle_unit = "percent"',
-        ),
-        _Cause(
-            len(falls) > 0 and 160 < -np.median(falls) < 200,
-            f"it falls back by {-np.median(falls) if len(falls) else 0:.0f} deg: two turns of the signal a turn of "
-            "the crank? Double it and unwrap it first",
-        ),
-        _Cause(
-            np.ptp(values) > 300 and len(back) > 0,
-            f"it goes back from {top:.0f} to {values.min():.0f} through values between: was it filtered after it was "
-            "wrapped? Unwrap it before filtering",
+        (
+            fall > 0 and high - low > 300,
+            f"it goes back from {high:.0f} to {low:.0f} through values between: was it filtered after it was wrapped? "
+            "Unwrap it before filtering",
         ),
     )
-    return next((cause.advice for cause in causes if cause.looks), "")
+    return next((advice for looks, advice in causes if looks), "")
