@@ -25,7 +25,7 @@ def ramp() -> float:
     return read_toml(_FILE, "priors of muscles").section(_STIMULATOR).number("ramp_s")
 
 
-def drawn(count: int, random: np.random.Generator) -> dict[str, FloatArray]:
+def drawn(count: int, random: "np.random.Generator") -> dict[str, FloatArray]:
     """So many riders of every quantity, shape (count,), independent of each other."""
     return {name: quantile(name, random.standard_normal(count)) for name in priors()}
 
