@@ -63,8 +63,8 @@ def test_optimise(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert runs.progress(tmp_path) is None
     monkeypatch.setattr(runs, "optimize", partial(fes_mj.optimize, budget=300))
     run = runs.optimise(D1, P1P2, tmp_path)
-    found, problem = design_of(run["design"]), make_problem("cdt", P1P2, start="d1", compared_with="d1")
-    evaluation = problem.evaluate(problem.variables(found)[None])
+    best, problem = design_of(run["design"]), make_problem("cdt", P1P2, start="d1", compared_with="d1")
+    evaluation = problem.evaluate(problem.variables(best)[None])
     assert evaluation.feasible.all()
     assert f"{evaluation.power[0, 0]:.2f} W" in run["verdict"]
     assert evaluation.power[0, 0] >= problem.evaluate(problem.variables(D1)[None]).power[0, 0]

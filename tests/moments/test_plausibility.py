@@ -32,9 +32,9 @@ RIGHT = [
 
 @pytest.mark.parametrize("trial", RIGHT)
 def test_a_right_trial_has_its_work_and_no_warning(trial: Trial, tmp_path: Path) -> None:
-    found = load_measurement(measurement(tmp_path, trial))
-    assert found.moments.misreadings == ()
-    content = found.summary()
+    measured = load_measurement(measurement(tmp_path, trial))
+    assert measured.moments.misreadings == ()
+    content = measured.summary()
     noisy = 0.02 if trial.noise else 3e-3  # the crank angle of a speed that comes and goes by 60 %: 1.5 deg
     assert content["work_per_turn_J"] == pytest.approx(work(), rel=noisy)
 
