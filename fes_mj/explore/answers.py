@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from fes_mj.common.errors import InputError
-from fes_mj.common.reading import Section, is_text
+from fes_mj.common.reading import Section, is_number, is_text
 from fes_mj.common.style import COLOURS, MOMENTS
 from fes_mj.explore.dimensions import content_of, design_of, dimensions, of_kind
 from fes_mj.explore.pose import plane
@@ -106,9 +106,7 @@ class Answers:
             "simulate": lambda: {"legs": _legs(question)},
             "ride": lambda: {
                 "transmission": question.choice("transmission", TRANSMISSIONS, TRANSMISSIONS[0]),
-                "slope": question.number("slope", -STEEPEST, STEEPEST, f"a slope from -{STEEPEST:g} to {STEEPEST:g} %")
-                if "slope" in question.content
-                else 0.0,
+                "slope": question.value("slope", 0.0, _is_slope, f"a slope from -{STEEPEST:g} to {STEEPEST:g} %"),
             },
         }
         own = options.get(name, dict)()
@@ -135,6 +133,10 @@ def _page(question: Section) -> str:
 
 def _design(question: Section) -> Design:
     return design_of(question.content.get("design"))
+
+
+def _is_slope(value: Any) -> bool:
+    return is_number(value) and abs(value) <= STEEPEST
 
 
 def _legs(question: Section) -> int:

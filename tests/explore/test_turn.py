@@ -1,6 +1,8 @@
 """Curves and numbers of the page are those of the solvers that it shows, and they come at once."""
 
+import gc
 import time
+import tracemalloc
 from dataclasses import replace
 
 import numpy as np
@@ -97,6 +99,20 @@ def test_outside_the_moments_range_is_marked() -> None:
     assert outside.any()
     assert np.all(under["outside"][outside])
     assert "no moments are known" in under["note"]
+
+
+@pytest.mark.long
+def test_turns_leave_nothing_behind() -> None:
+    """Once the caches (at most 256 designs) are full, many more turns take less memory than the answer to one."""
+    design, own, sizes = fes_mj.load_design("d1"), {"p1p2": GROUPS["p1p2"]}, []
+    tracemalloc.start()
+    for n in range(340):
+        answer = as_json(turn(replaced(design, {"R2": 0.14 + 5e-5 * n}), own))
+        if n in (270, 339):
+            gc.collect()
+            sizes.append(tracemalloc.get_traced_memory()[0])
+    tracemalloc.stop()
+    assert sizes[1] - sizes[0] < len(answer)
 
 
 def test_from_slider_to_new_curves(answers: Answers) -> None:
