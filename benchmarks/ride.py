@@ -8,13 +8,14 @@ import numpy as np
 
 from benchmarks import core, record
 from fes_mj.common.console import print_table
+from fes_mj.crosscheck.ride_case import RideCase
 from fes_mj.linkage.design_file import load_design
 from fes_mj.moments.files import load_moments
 from fes_mj.moments.torque_velocity import load_torque_velocity
 from fes_mj.riding.ride import Ride
 from fes_mj.riding.trace import ride as ride_by_equation
 from fes_mj.simulation.road import ride_on_road
-from fes_mj.simulation.road_mjcf import TIMESTEP, build_road_mjcf
+from fes_mj.simulation.road_mjcf import build_road_mjcf
 
 DURATION = 60.0  # s of riding
 DESIGNS = ("trt", "d1")
@@ -25,7 +26,8 @@ def rates(name: str) -> dict[str, np.ndarray]:
     """Seconds of riding per second by the reduced model, MuJoCo with all records, a bare mj_step loop on its model."""
     moments = load_moments("p1p2").at_speed(load_torque_velocity("hill"))
     ride = Ride(load_design(name), moments, duration=DURATION)
-    model, steps = build_road_mjcf(ride, drawn=False).compile(), round(DURATION / TIMESTEP)
+    step = RideCase(ride).simulation.timestep
+    model, steps = build_road_mjcf(ride, step, drawn=False).compile(), round(DURATION / step)
 
     def bare() -> None:
         data, step = mujoco.MjData(model), mujoco.mj_step
@@ -36,7 +38,7 @@ def rates(name: str) -> dict[str, np.ndarray]:
     measured = core.rates(
         {
             f"{name}: reduced": (1, lambda: ride_by_equation(ride)),
-            f"{name}: MuJoCo, everything recorded": (1, lambda: ride_on_road(ride)),
+            f"{name}: MuJoCo, everything recorded": (1, lambda: ride_on_road(ride, step)),
             f"{name}: bare mj_step": (1, bare),
         },
         ROUNDS,

@@ -65,10 +65,7 @@ class RideCase(Brief):
     @cached_property
     def simulation(self) -> RoadRun:
         """By MuJoCo, for as long as the reference rides. Raises UnstableError if it breaks down."""
-        trial, step = self.trial, self.timestep
-        return self.simulated(
-            step or tried_timestep(self.reference, trial.timestep, trial.lost / work_scale(trial.trace))
-        )
+        return self.simulated(self.timestep or tried_timestep(self.reference, self.trial))
 
     def simulated(self, timestep: float) -> RoadRun:
         """By MuJoCo with a time step in s."""

@@ -1,17 +1,14 @@
-"""How far two rides are apart, and how much of the muscles' work a ride may lose before its speed changes."""
+"""How far two rides are apart, and with what their errors are compared."""
 
 import math
-from dataclasses import replace
-from functools import lru_cache
 
 import numpy as np
 
 from fes_mj.common.arrays import FloatArray
 from fes_mj.common.checks import LEAST_POWER
-from fes_mj.riding.trace import LEAST_ADVANCE, Trace, ride as ride_by_equation
+from fes_mj.riding.trace import LEAST_ADVANCE, Trace
 
 DISTANCES = 2000  # at which two speeds are compared
-LOSS = 1e-4  # of the work, that is taken from a ride to see what becomes of it
 
 
 def speed_difference(one: Trace, other: Trace) -> float:
@@ -39,17 +36,3 @@ def _speed_squared(trace: Trace, distance: FloatArray) -> FloatArray:
 def work_scale(trace: Trace) -> float:
     """Work of a ride that losses are compared with, J: the muscles', and at least that of LEAST_POWER."""
     return max(float(np.ptp(trace.muscle_work)), LEAST_POWER * float(trace.time[-1]))
-
-
-@lru_cache(maxsize=1)
-def sensitivity(trace: Trace) -> float:
-    """Relative change of a ride's speed (speed_difference) per part of its work that something takes from it.
-
-    By riding again, by the reduced equation of motion, with so much more rolling resistance.
-    """
-    ride, way = trace.ride, float(np.abs(np.diff(trace.distance)).sum())
-    if not way:
-        return 0.0
-    resistance = LOSS * work_scale(trace) / way / (ride.load.weight * math.cos(ride.road.angle))
-    braked = replace(ride.road, rolling_resistance=ride.road.rolling_resistance + resistance)
-    return speed_difference(ride_by_equation(replace(ride, road=braked)), trace) / LOSS

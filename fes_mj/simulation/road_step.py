@@ -8,14 +8,15 @@ from fes_mj.common.arrays import FloatArray
 from fes_mj.common.checks import definitions
 from fes_mj.common.errors import InputError
 from fes_mj.linkage.legs import TWO_LEGS
-from fes_mj.riding.differences import sensitivity, work_scale
+from fes_mj.riding.differences import speed_difference, work_scale
 from fes_mj.riding.trace import Trace
+from fes_mj.simulation.road import RoadRun
 from fes_mj.simulation.road_mjcf import TIMESTEP
 from fes_mj.simulation.time_step import FINE_TURN, SHARE, TRIAL, local_errors
 
 MOST_STEPS = 2_000_000  # with their records two thirds of a gigabyte and half a minute
-# What a trial run loses may ask for so much finer a step than the closed form does, which knows no joint moments. To
-# lose still more is no matter of the step.
+# A trial run may ask for so much finer a step than the closed form does, which knows no joint moments and no loose
+# crank. To be still farther off is no matter of the step.
 FINER = 4.0
 
 
@@ -27,24 +28,19 @@ def ride_timestep(trace: Trace) -> float:
     take more than MOST_STEPS.
     """
     lost, gap = predicted_losses(trace, TIMESTEP)
-    gaps = gap / (SHARE * definitions()["loop_gap"].limit)
-    return _within_reason(trace, TIMESTEP / math.sqrt(max(1.0, gaps, lost / allowed_loss(trace))))
+    return _within_reason(trace, TIMESTEP / math.sqrt(max(1.0, _share("ride_energy", lost), _share("loop_gap", gap))))
 
 
-def tried_timestep(trace: Trace, trial: float, lost: float) -> float:
-    """The same, once a trial run with twice ride_timestep, `trial` s, has lost so much of its work: at most that.
-
-    lost: per work_scale.
-    """
-    finer = math.sqrt(abs(lost) / 4 / allowed_loss(trace))
-    return _within_reason(trace, trial / 2 / min(max(1.0, finer), FINER))
+def tried_timestep(trace: Trace, trial: RoadRun) -> float:
+    """The same, at most, once a trial run with twice that step shows its loss, and how far it is from the reference."""
+    lost, apart = abs(trial.lost) / work_scale(trial.trace), speed_difference(trial.trace, trace)
+    finer = math.sqrt(max(_share("ride_energy", lost), _share("ride_speed", apart)) / 4)
+    return _within_reason(trace, trial.timestep / 2 / min(max(1.0, finer), FINER))
 
 
-def allowed_loss(trace: Trace) -> float:
-    """Part of its work_scale that a ride may lose: SHARE of what shows by itself, or in the speed."""
-    limits = definitions()
-    in_speed = limits["ride_speed"].limit / max(sensitivity(trace), 1e-9)
-    return SHARE * min(limits["ride_energy"].limit, in_speed)
+def _share(check: str, error: float) -> float:
+    """An error in units of what is allowed: SHARE of the limit of the check that sees it."""
+    return error / (SHARE * definitions()[check].limit)
 
 
 def _within_reason(trace: Trace, step: float) -> float:

@@ -23,6 +23,7 @@ HILL, HILL_P1P3 = (fes_mj.load_moments(group).at_speed(load_torque_velocity("hil
         Ride(fes_mj.load_design("trt"), HILL, Road(slope=-0.01), launch=0.0, start=1.0, duration=6.0),
         Ride(fes_mj.load_design("r1"), P1P2, Road(slope=0.10), duration=20.0),  # it rolls back, the crank loose
         Ride(fes_mj.load_design("r2"), HILL, Road(slope=0.20), duration=20.0),
+        Ride(fes_mj.load_design("d1"), P1P2, Road(slope=0.033), duration=20.0),  # slowly through its dead centres
         Ride(fes_mj.load_design("d2"), HILL, lag=0.1, transmission="fixed", duration=4.0),
         Ride(fes_mj.load_design("d2"), HILL_P1P3, transmission="fixed", duration=20.0),  # it ends where the crank jerks
     ],

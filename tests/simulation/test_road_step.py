@@ -2,16 +2,21 @@
 
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
+from typing import cast
 
 import pytest
 
 import fes_mj
+from fes_mj.common.checks import definitions
 from fes_mj.moments.torque_velocity import load_torque_velocity
+from fes_mj.riding.differences import work_scale
 from fes_mj.riding.ride import Ride, Road
 from fes_mj.riding.trace import ride as solved
-from fes_mj.simulation.road import ride_on_road
+from fes_mj.simulation.road import RoadRun, ride_on_road
 from fes_mj.simulation.road_mjcf import TIMESTEP
-from fes_mj.simulation.road_step import FINER, allowed_loss, predicted_losses, ride_timestep, tried_timestep
+from fes_mj.simulation.road_step import FINER, predicted_losses, ride_timestep, tried_timestep
+from fes_mj.simulation.time_step import SHARE
 
 P1P2 = fes_mj.load_moments("p1p2")
 DOWNHILL = Ride(fes_mj.load_design("d1"), P1P2.at_speed(load_torque_velocity("hill")), Road(slope=-0.05), duration=8.0)
@@ -36,12 +41,13 @@ def test_a_fast_crank_takes_finer_steps() -> None:
     assert ride_timestep(solved(DOWNHILL)) < TIMESTEP
 
 
-def test_a_trial_that_loses_more_than_predicted_asks_for_finer_steps() -> None:
+@pytest.mark.parametrize(("lost", "finer"), [(1.0, 1.0), (16.0, 2.0), (-1e9, FINER)])
+def test_a_trial_that_loses_more_than_predicted_asks_for_finer_steps(lost: float, finer: float) -> None:
+    """Losses in units of what is allowed at the step itself, a quarter of the trial's: of second order."""
     trace = solved(DOWNHILL)
-    trial, allowed = 2 * ride_timestep(trace), allowed_loss(trace)
-    assert tried_timestep(trace, trial, allowed) == trial / 2
-    assert tried_timestep(trace, trial, 16 * allowed) == pytest.approx(trial / 4)
-    assert tried_timestep(trace, trial, -1e9 * allowed) == pytest.approx(trial / 2 / FINER)
+    allowed = SHARE * definitions()["ride_energy"].limit * work_scale(trace)
+    trial = SimpleNamespace(trace=trace, timestep=4e-4, lost=lost * allowed)
+    assert tried_timestep(trace, cast("RoadRun", trial)) == pytest.approx(2e-4 / finer)
 
 
 def test_too_many_steps_are_refused_with_their_number() -> None:
