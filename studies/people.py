@@ -18,7 +18,7 @@ from fes_mj.fit.population import fit_population
 from fes_mj.fit.search import best_seats
 from fes_mj.fit.seat import fit_seat, seat_text
 from fes_mj.fit.seats import Seats
-from fes_mj.linkage.design import Design, Rider
+from fes_mj.linkage.design import AT_JOINT, Design, Rider
 from fes_mj.linkage.design_file import design_toml, load_design
 from fes_mj.linkage.joints import PerJoint
 from fes_mj.linkage.variables import COMPONENTS, component
@@ -38,7 +38,6 @@ SAMPLES, SAMPLE_SEED = 1000, 0
 SEARCHES, BUDGET, WORKERS = 3, 25_000, Workers(jobs=2)
 TARGETS = ("r1", "d1")
 STATISTICS = {"population": "the mean", "population-p10": "the 10th percentile"}
-AT_PIN = 0.005  # m, half the print's last digit
 VARIED = tuple(name for name, (variable, _) in COMPONENTS.items() if variable.owner == "linkage")
 
 
@@ -202,7 +201,7 @@ def _degenerate(designs: list[Design]) -> str:
     close = [
         f"{design.name} ({component(design, 'R8') * 1e3:.1f} mm)"
         for design in designs
-        if component(design, "R8") < AT_PIN
+        if component(design, "R8") < AT_JOINT
     ]
     return "Pedal practically on the rocker joint, so that the coupler no longer drives it: " + ", ".join(close) + "."
 

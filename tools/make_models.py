@@ -65,7 +65,7 @@ def _readme(design: Design, moments: JointMoments) -> str:
     return Template((TOOLS / "model_readme.md").read_text(encoding="utf-8")).substitute(
         name=design.name,
         NAME=design.name.upper(),
-        title=design.linkage.architecture.title,
+        title=design.linkage.title,
         rpm=f"{design.linkage.cadence / RPM:.2f}",
         joints=model.njnt + model.neq,
         loops="one of them a `connect` constraint" if model.neq == 1 else "two of them `connect` constraints",

@@ -4,13 +4,15 @@ import gc
 import os
 import sys
 
-from fes_mj.cli.process import interruption_code, prepare
+from fes_mj.cli.process import interruption_code, leave, prepare
 from fes_mj.common.errors import InputError
 
 AGREES, DISAGREES, BAD_INPUT, MISSING_PART = 0, 1, 2, 3
+FAULT = 70  # of the program itself, as sysexits.h has it
+OUT_OF_MEMORY = "there is not enough memory; ask for fewer turns, points or --jobs"
 PURPOSE = "Does a pedalling linkage for FES cycling deliver its power when legs have mass and loops must close?"
 # The help lines stand here so that `--help` need not import the commands, nor anything else.
-EXIT_CODES = "Exit codes: 0 agrees, 1 does not, 2 bad input, 3 a needed part is missing, 130 Ctrl-C, 143 SIGTERM."
+EXIT_CODES = "Exit codes: 0 agrees, 1 does not, 2 bad input, 3 a part is missing, 70 a fault, 130 Ctrl-C, 143 SIGTERM."
 COMMANDS = {
     "Check a design": {
         "simulate": "Simulate a design in MuJoCo and compare its crank power with statics.",
@@ -43,13 +45,16 @@ def main() -> None:
         gc.set_threshold(100_000)
         status = _run(sys.argv[1:])
         gc.freeze()
-        sys.exit(status)
+        leave(status)
     except (KeyboardInterrupt, Exception) as error:
-        code = interruption_code(error)
-        if code is None and not isinstance(error, InputError):
-            raise
-        print(f"fes_mj: {error if code is None else 'interrupted; nothing was left half-written'}", file=sys.stderr)
-        sys.exit(BAD_INPUT if code is None else code)
+        code, said = interruption_code(error), "interrupted; nothing was left half-written"
+        if code is None and isinstance(error, InputError | MemoryError):
+            code, said = BAD_INPUT, str(error) if isinstance(error, InputError) else OUT_OF_MEMORY
+        if code is None:
+            sys.excepthook(*sys.exc_info())
+            leave(FAULT)
+        print(f"fes_mj: {said}", file=sys.stderr)
+        leave(code)
 
 
 def _run(arguments: list[str]) -> int:

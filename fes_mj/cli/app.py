@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 from cyclopts import App, CycloptsError
 
-from fes_mj.cli import AGREES, BAD_INPUT, COMMANDS, DISAGREES, MISSING_PART, MOVED, PURPOSE
+from fes_mj.cli import AGREES, BAD_INPUT, COMMANDS, DISAGREES, MISSING_PART, MOVED, OUT_OF_MEMORY, PURPOSE
 from fes_mj.cli.process import interruption_code
 from fes_mj.common.console import errors
 from fes_mj.common.errors import InputError, MissingPartError, UnstableError
@@ -15,6 +15,7 @@ EXPECTED = {
     CycloptsError: BAD_INPUT,
     InputError: BAD_INPUT,
     OSError: BAD_INPUT,
+    MemoryError: BAD_INPUT,
     MissingPartError: MISSING_PART,
     UnstableError: DISAGREES,
 }
@@ -45,6 +46,8 @@ def run(arguments: Sequence[str] | None = None) -> int:
         code = next((code for kind, code in EXPECTED.items() if isinstance(error, kind)), None)
         if code is None or interruption_code(error) is not None:
             raise
+        if isinstance(error, MemoryError):
+            error = InputError(OUT_OF_MEMORY)
         _say(f"{error.filename or 'a file'}: {error.strerror or error}" if isinstance(error, OSError) else error)
         return code
 

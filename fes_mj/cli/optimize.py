@@ -153,7 +153,7 @@ def _print(winner: Winner, optimum: Optimum) -> None:
         conclude(False, "Beware", f": {'; '.join(doubts)}.")
     if optimum.repair:
         say(f"the start did not keep the limits and was repaired: {optimum.repair}")
-    title = f"{design.name}: {design.linkage.architecture.title}; {winner.case.moments.name}"
+    title = f"{design.name}: {design.linkage.title}; {winner.case.moments.name}"
     print_table(f"{title}; {optimum.method}, {optimum.evaluations:,} evaluations", ("", "value"), winner.rows)
     print_table("Constraints", ("constraint", "value", "limit", ""), optimum.limit_rows)
     if people.count > 1:

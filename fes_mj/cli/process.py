@@ -63,11 +63,24 @@ def prepare() -> None:
 
 
 _received: list[int] = []  # signals that were to end the process
+_leaving = False  # nothing is left to tidy up
 
 
-def _interrupt(number: int, _: FrameType | None) -> NoReturn:
+def _interrupt(number: int, _: FrameType | None) -> None:
+    if _leaving:
+        os._exit(128 + number)
     _received.append(number)
-    raise KeyboardInterrupt(number)
+    if len(_received) == 1:  # while one is tidying up, another would break into that; a third means it
+        raise KeyboardInterrupt(number)
+    if len(_received) > 2:
+        os._exit(128 + _received[0])
+
+
+def leave(code: int) -> NoReturn:
+    """End the process with this exit code; a signal that comes while Python goes ends it at once, with its own."""
+    global _leaving
+    _leaving = True
+    sys.exit(code)
 
 
 def interruption_code(error: BaseException) -> int | None:

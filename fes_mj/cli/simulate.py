@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 from cyclopts import Group, Parameter
@@ -12,11 +13,14 @@ from cyclopts.validators import Number
 import fes_mj
 from fes_mj.budget.budget import error_budget, summary
 from fes_mj.cli import tables
+from fes_mj.cli.cases import checked_case
 from fes_mj.cli.options import BearingOptions, DesignName, Flag, Out, RunOptions, needs
+from fes_mj.common.checks import Check
 from fes_mj.common.console import print_table
 from fes_mj.common.errors import InputError
 from fes_mj.common.units import RPM
 from fes_mj.common.writing import json_text, require_results, require_writable, write_results
+from fes_mj.linkage.design_file import design_path, design_toml
 from fes_mj.simulation.time_step import LONGEST_TIMESTEP
 
 _VIDEO = Group("Video", validator=needs("--render"))
@@ -51,13 +55,24 @@ def simulate(
     require_writable(render, "the video", ".mp4", inputs)
     if speed is not None:
         _check_speed(speed, loaded.cadence)
-    case = fes_mj.Case(*loaded, timestep, turns, options.legs, bearings.load())
+    from fes_mj.common.provenance import provenance
+    from fes_mj.verification.suite import quick_groups, verify
+
+    one_leg = checked_case(design, options, timestep=timestep, turns=turns, bearings=bearings.load())
+    case = one_leg if options.legs == 1 else one_leg.two_legs
     stem = f"{case.design.name}-{case.moments.name}"
     paths = require_results(out, stem, ("json", "csv", "xml"), inputs) if out else {}
-    content = case.summary() | summary(error_budget(*case.statics.turns)) if paths or options.json else {}
+    # bearings lose energy, which every other check takes for an error
+    checks = case.checks if case.bearings else [*verify(one_leg, quick_groups(options.legs))]
+    agrees = all(check.ok for check in checks)
+    content = (
+        _content(case, checks, provenance([design_path(design, options.dims), *inputs[1:]]))
+        if paths or options.json
+        else {}
+    )
     if paths:
         write_results(dict(zip(paths.values(), (json_text(content), *_texts(case)), strict=True)))
-    options.show(lambda: content, lambda: _print(case, options.verbose))
+    options.show(lambda: content, lambda: _print(case, checks, options.verbose))
     if render:
         from fes_mj.viewing.render import render_video
 
@@ -67,7 +82,17 @@ def simulate(
         from fes_mj.viewing import viewer
 
         viewer.show(*loaded)
-    return 0 if case.agrees else 1
+    return 0 if agrees else 1
+
+
+def _content(case: fes_mj.Case, checks: Sequence[Check], source: dict[str, Any]) -> dict[str, Any]:
+    """The result as JSON names and units it, and what it was made from."""
+    return (
+        case.summary()
+        | summary(error_budget(*case.statics.turns))
+        | {"agrees": all(check.ok for check in checks), "checks": [check.as_json() for check in checks]}
+        | {"design_toml": design_toml(case.design), "provenance": source}
+    )
 
 
 def _check_speed(speed: float, cadence: float) -> None:
@@ -80,7 +105,7 @@ def _check_speed(speed: float, cadence: float) -> None:
         )
 
 
-def _print(case: fes_mj.Case, verbose: bool) -> None:
+def _print(case: fes_mj.Case, checks: Sequence[Check], verbose: bool) -> None:
     run = case.simulation
     dynamic = (
         tables.with_error(run.power_mean, case.statics.power_sd),  # the mean is the same functional of the moments
@@ -92,19 +117,21 @@ def _print(case: fes_mj.Case, verbose: bool) -> None:
     heads = ("", *(f"quasi-static{side}" for side in sides), "dynamic")
     print_table(tables.heading(case.static, len(run.legs)), heads, [(*row, measured) for row, measured in rows])
     tables.print_budget(*case.statics.turns)
-    turn = tables.beside(*map(tables.turn_rows, (case.static.summary(), case.summary())))
+    turn = tables.beside(*map(tables.turn_rows, (case.static.summary(), case.static.summary() | case.characteristics)))
     together = "dynamic" if len(run.legs) == 1 else "dynamic, both legs"
     print_table("The turn", ("", f"quasi-static{sides[0]}", together), turn)
     tables.print_forces(case.joint_forces)
     tables.print_friction(case.steps.friction)
-    tables.print_checks("Checks", case.checks)
+    tables.print_checks(
+        "Checks", [*case.checks, *(check for check in checks if not (check.ok or check in case.checks))]
+    )
     if verbose:
         terms = [(name.replace("_", " "), f"{value:.5f}") for name, value in run.energy.as_json().items()]
         print_table("Energy over the measured turns", ("term", "J"), terms)
         print_table("Constraint forces", ("loop", "mean N", "largest N"), tables.force_rows(run.loop_force))
     for quasi_static in case.statics.turns:
         tables.print_notes(quasi_static, f"{quasi_static.moments.name}: " if len(case.statics.turns) > 1 else "")
-    tables.conclude_checks("Dynamic and static", case.checks, f": mean power differs by {case.difference_text}")
+    tables.conclude_checks("Dynamic and static", checks, f": mean power differs by {case.difference_text}")
 
 
 def _texts(case: fes_mj.Case) -> tuple[str, str]:

@@ -64,6 +64,8 @@ def sweep(
 
         write_plot(sweep, plot)
     options.show(lambda: summary, lambda: _print(summary, study.stem, sweep.study), rows=csv, plot=plot)
+    if not summary["computed"]:
+        raise InputError(f"{study}: none of its {summary['points']:,} points could be computed: {summary['why']}")
 
 
 def _run(sweep: "Sweep", workers: Workers, name: str, silent: bool) -> dict[str, Any]:

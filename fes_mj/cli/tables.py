@@ -24,7 +24,7 @@ def heading(result: DrivenTurn, legs: int = 1) -> str:
 
 def what_moves(design: Design, driver: str) -> str:
     """Which design, what drives it."""
-    return f"{design.name}, {design.linkage.architecture.title}; {driver}"
+    return f"{design.name}, {design.linkage.title}; {driver}"
 
 
 def power_rows(result: DrivenTurn) -> list[tuple[str, str]]:

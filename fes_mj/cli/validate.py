@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Group, Parameter
 
+from fes_mj.cli.cases import checked_case
 from fes_mj.cli.options import DesignName, Flag, RunOptions, needs
 from fes_mj.cli.tables import print_checks, print_notes
 from fes_mj.common.checks import Check, definitions, find
@@ -16,8 +17,7 @@ from fes_mj.common.console import conclude, number, print_table, say, track
 from fes_mj.common.errors import InputError
 from fes_mj.common.provenance import provenance
 from fes_mj.common.writing import require_writable, write_text
-from fes_mj.linkage.design_file import DESIGNS, design_path
-from fes_mj.statics.validity import valid_speed
+from fes_mj.linkage.design_file import DESIGNS
 from fes_mj.viewing.pages import require_page_packages
 
 if TYPE_CHECKING:
@@ -97,19 +97,11 @@ def _explain(name: str) -> int:
 
 def _cases(designs: Sequence[str], options: RunOptions, quick: bool) -> Iterator[VerificationCase]:
     """Every design with the moments asked for; both groups in a full run that names none."""
-    from fes_mj.paper.printed import table1
-    from fes_mj.verification.case import VerificationCase
-
     both = [replace(options, group="p1p2"), replace(options, group="p1p3")]
     chosen = [options] if quick or options.group or options.moments else both
     for design in dict.fromkeys(designs):
-        printed = table1()[design] if design in DESIGNS and options.dims == "identified" else None
         for choice in chosen:
-            case = VerificationCase(
-                *choice.load(design), expected=printed, file=design_path(design, options.dims), refined=not quick
-            )
-            valid_speed(case.design, case.moments, case.cadence)
-            yield case
+            yield checked_case(design, choice, refined=not quick)
 
 
 def _check_files(report: Path | None, junit: Path | None, video: Path | None, inputs: list[Path]) -> None:
@@ -124,9 +116,9 @@ def _check_files(report: Path | None, junit: Path | None, video: Path | None, in
 
 
 def _run_checks(cases: list[VerificationCase], quick: bool, options: RunOptions) -> list[Check]:
-    from fes_mj.verification.suite import FULL, QUICK, benchmarks, two_leg_checks, verify
+    from fes_mj.verification.suite import FULL, benchmarks, quick_groups, verify
 
-    groups = FULL if not quick else (*QUICK, two_leg_checks) if options.legs == 2 else QUICK
+    groups = quick_groups(options.legs) if quick else FULL
     runs = [verify(case, (group,)) for case in cases for group in groups] + [benchmarks()]
     return [check for run in track(runs, "checking", options.silent) for check in run]
 

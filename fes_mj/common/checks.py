@@ -14,6 +14,11 @@ _FILE = DATA / "checks.toml"
 LEAST_POWER = 10.0  # W
 
 
+def power_scale(power_mean: float) -> float:
+    """What relative limits refer to: the mean power of one leg, W, but no less than LEAST_POWER."""
+    return max(abs(power_mean), LEAST_POWER)
+
+
 @dataclass(frozen=True)
 class Definition:
     """One row of data/checks.toml."""

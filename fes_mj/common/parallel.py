@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, ExitStack
 from typing import Any, NamedTuple, TypeVar
 
-from fes_mj.common.errors import InputError, UnstableError, require_extra
+from fes_mj.common.errors import InputError, require_extra
 
 Task = TypeVar("Task")
 Result = TypeVar("Result")
@@ -33,8 +33,8 @@ def run_tasks(
 ) -> Iterator[tuple[int, Result]]:
     """Yield (index, function(task)) as tasks finish, in any order.
 
-    A task should take seconds. Raises InputError for a scheduler that does not answer or fewer than one job,
-    UnstableError if a local worker process dies (a cluster repeats the lost task elsewhere).
+    A task should take seconds. Raises InputError for a scheduler that does not answer, for fewer than one job, and if
+    a local worker process dies (a cluster repeats the lost task elsewhere).
     """
     if workers.jobs < 1:
         raise InputError(f"--jobs is {workers.jobs}; it must be at least 1")
@@ -50,8 +50,9 @@ def run_tasks(
             yield from parallel(joblib.delayed(_numbered)(function, index, task) for index, task in enumerate(tasks))
         except RuntimeError as error:
             if type(error).__name__ == "TerminatedWorkerError":
-                raise UnstableError(
-                    "a worker process died (killed, or out of memory); what was finished is kept"
+                raise InputError(
+                    "a worker process died (killed, or out of memory); what was finished is kept: start it again, with "
+                    "fewer --jobs"
                 ) from None
             raise
 

@@ -13,7 +13,6 @@ from fes_mj.common.console import number
 from fes_mj.common.text import typeset
 from fes_mj.common.writing import write_text
 from fes_mj.crosscheck.ride_case import RideCase
-from fes_mj.crosscheck.turn_case import Case
 from fes_mj.explore.dimensions import content_of
 from fes_mj.fit.seat import fit_seat, seat_text
 from fes_mj.linkage.design import Design
@@ -23,17 +22,20 @@ from fes_mj.moments.torque_velocity import load_torque_velocity
 from fes_mj.optimization.findings import Findings
 from fes_mj.optimization.optimize import optimize
 from fes_mj.riding.ride import Ride, Road
+from fes_mj.verification.case import VerificationCase
+from fes_mj.verification.suite import quick_groups, verify
 
 SEARCHES = 4
 
 
 def simulate(design: Design, moments: JointMoments, state: Path, *, legs: int) -> dict[str, Any]:
     """As `fes_mj simulate`: the verdict in a sentence, and every check. Raises what Case raises."""
-    case = Case(design, moments, legs=legs)
+    one_leg = VerificationCase(design, moments)
+    case = one_leg if legs == 1 else one_leg.two_legs
     power = (
         f"mean power {case.simulation.power_mean:.2f} W against {case.statics.power_mean:.2f} W, {case.difference_text}"
     )
-    return _checked("Dynamic and static", power, case.checks)
+    return _checked("Dynamic and static", power, [*verify(one_leg, quick_groups(legs))])
 
 
 def ride(design: Design, moments: JointMoments, state: Path, *, transmission: str, slope: float) -> dict[str, Any]:

@@ -51,6 +51,7 @@ class Architecture:
         return {point: pair for point, pair in joints.items() if {*pair} <= {"frame", *self.bodies}}
 
 
+AT_JOINT = 0.005  # m, less than a pin's radius: what is nearer to a joint sits on it
 BRANCHES = {"left": 1, "right": -1}
 SEXES = ("male", "female")
 _FOUR_BAR = ("thigh", "shank", "crank")
@@ -100,6 +101,13 @@ class Linkage:
     @property
     def architecture(self) -> Architecture:
         return ARCHITECTURES[self.kind]
+
+    @property
+    def title(self) -> str:
+        """What kind of tricycle it is, in words; with its pedal on the rocker joint one is a crank-rocker."""
+        if self.kind == "cdt" and self.pedal_arm < AT_JOINT:
+            return f"{ARCHITECTURES['crt'].title}: coupler-driven in name, its pedal is on the rocker joint"
+        return self.architecture.title
 
     @property
     def crank_centre(self) -> complex:

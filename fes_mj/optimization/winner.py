@@ -106,9 +106,9 @@ class Winner:
         """How uneven it is, as JSON names and units it: crank power of one leg as simulated, and the crank's speed."""
         power = self.case.simulation.power
         return {
-            "power_lowest_W": float(power.min()),
-            "power_highest_W": float(power.max()),
-            "power_peak_to_peak_W": float(np.ptp(power)),
+            "simulated_power_lowest_W": float(power.min()),
+            "simulated_power_highest_W": float(power.max()),
+            "simulated_power_peak_to_peak_W": float(np.ptp(power)),
             "speed_ripple": self.ripple,
         }
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from fes_mj.common.arrays import ComplexArray, FloatArray
 from fes_mj.common.brief import Brief
+from fes_mj.common.checks import Check, check, power_scale
 from fes_mj.common.units import RPM
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.joints import JOINTS, PerJoint
@@ -108,6 +109,21 @@ class Simulation(Brief):
     def cadence_ripple(self) -> float:
         """Largest relative deviation of the crank speed from the cadence."""
         return float(np.abs(self.crank_speed / self.cadence - 1).max())
+
+    def checks(self, static_power: float, friction_loss: float = 0.0, subject: str = "") -> tuple[Check, ...]:
+        """What of the cross-check a run and the quasi-static mean power of a leg, W, show by themselves.
+
+        friction_loss: of the bearings of one leg, W.
+        """
+        scale, duration = power_scale(static_power), len(self.legs) * len(self.crank_angle) * self.timestep
+        lost = self.energy.lost - friction_loss * duration
+        values = {
+            "mean_power": abs(self.power_mean - (static_power - friction_loss)) / scale,
+            "loop_gap": self.loop_gap_max,
+            "cadence_ripple": self.cadence_ripple,
+            "energy_balance": abs(lost) / (scale * duration),
+        }
+        return tuple(check(name, value, subject) for name, value in values.items())
 
 
 @dataclass(frozen=True)

@@ -111,7 +111,7 @@ def build_mjcf(
     cadence = crank_speed(design, cadence)
     spec = mujoco.MjSpec()
     spec.modelname = design.name
-    spec.comment = f"{design.name}: {design.linkage.architecture.title}, {cadence / RPM:.2f} rpm"
+    spec.comment = f"{design.name}: {design.linkage.title}, {cadence / RPM:.2f} rpm"
     # as authored and at full precision: the default output has six digits, half a micrometre of loop error
     spec.compiler.savecompiled = spec.compiler.savecanonical = False
     spec.compiler.degree = False

@@ -16,6 +16,7 @@ from fes_mj.moments.torque_map import torque_map
 from fes_mj.statics.characteristics import motion_characteristics, power_characteristics
 from fes_mj.statics.cycles import Cycles, cycles
 from fes_mj.statics.equilibrium import virtual_work
+from fes_mj.statics.turn import quasi_static
 from fes_mj.statics.validity import obstacles
 from fes_mj.statics.work_table import WorkTable, uncertain_table
 from fes_mj.sweep.study import NAMES, Study
@@ -136,7 +137,7 @@ def _dynamic(
 ) -> Columns:
     """One simulated turn of every point that has a power, the loop in machine code.
 
-    Why a run breaks down or is refused goes to `why`.
+    Why a run breaks down, is refused or does not agree with statics goes to `why`.
     """
     from fes_mj.simulation.bench import BenchOptions, simulate
     from fes_mj.simulation.compiled import compiled_loop
@@ -146,10 +147,15 @@ def _dynamic(
     for row in np.flatnonzero(why == ""):
         point = {name: float(column[row]) for name, column in values.items()}
         cadence = point["cadence_rpm"] * RPM if "cadence_rpm" in point else None
+        varied = replaced(design, point)
         try:
-            run = simulate(replaced(design, point), moments, cadence=cadence, timestep=timestep, options=machine_code)
+            static = quasi_static(varied, moments, cadence).power_mean
+            run = simulate(varied, moments, cadence=cadence, timestep=timestep, options=machine_code)
         except (UnstableError, InputError) as error:  # it breaks down, or needs more steps than there may be
             why[row] = str(error).removeprefix(f"{design.name}: ")
+            continue
+        if failed := [check.name for check in run.checks(static) if not check.ok]:
+            why[row] = f"dynamic and static do not agree: {', '.join(failed)}"
             continue
         measured = (run.power_mean, run.loop_gap_max, run.cadence_ripple, run.timestep)
         for name, value in zip(result, measured, strict=True):

@@ -153,15 +153,19 @@ class Sweep(Brief):
                 writer.write_table(table)
 
     def summary(self) -> dict[str, Any]:
-        """Numbers of points, and the TOP ones with the most mean crank power."""
-        points, turning, top = 0, 0, []
+        """Numbers of points, the TOP ones with the most mean crank power, and why there is none, if there is none."""
+        points, turning, computed, why, top = 0, 0, 0, None, []
         for _, table in self.tables():
             points, turning = points + table.num_rows, turning + int(np.sum(table["turns"].to_numpy()))
+            refused = table["why"].drop_null()
+            computed += table.num_rows - len(refused)
+            why = why or (refused[0].as_py() if len(refused) else None)
             order = np.argsort(-table["power_mean_W"].to_numpy(), kind="stable")[:TOP]  # NaN, for null, comes last
             top += [row for row in table.take(order).to_pylist() if row["power_mean_W"] is not None]
             top = sorted(top, key=lambda row: -float(row["power_mean_W"]))[:TOP]
         best = top[0] if top else None
-        return {"folder": str(self.folder), "points": points, "turning": turning, "best": best, "top": top}
+        counts = {"points": points, "turning": turning, "computed": computed, "why": None if computed else why}
+        return {"folder": str(self.folder), **counts, "best": best, "top": top}
 
 
 def run_sweep(study: str | Path, folder: str | Path, workers: Workers = HERE) -> Sweep:

@@ -53,7 +53,7 @@ class Fault(NamedTuple):
             case,
             design=design,
             pipeline=type("FaultyPipeline", (case.pipeline,), dict(self.steps)),
-            ride_case=type("FaultyRide", (case.ride_case,), dict(self.ride_steps)),
+            ride_steps=self.ride_steps,
         )
 
 

@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy.fftpack import diff
 
 from fes_mj.common.arrays import BoolArray, ComplexArray, FloatArray
 from fes_mj.common.checks import Check
@@ -18,6 +17,7 @@ from fes_mj.crosscheck.turn_case import Case
 from fes_mj.linkage.design import BODIES, BRANCHES
 from fes_mj.linkage.joints import JOINTS
 from fes_mj.linkage.kinematics import Motion, cross
+from fes_mj.linkage.variables import SHORTEST
 from fes_mj.verification.case import VerificationCase
 
 # The catalogue is resolved to rounding by 512 points; linkages closer to a dead centre turn faster there.
@@ -70,9 +70,17 @@ def rate_errors(motion: Motion) -> tuple[float, float]:
     ]
     angle, rotation = motion.joint_angle.map(np.unwrap), motion.joint_rotation
     pairs += [(angle[joint], *rotation[joint]) for joint in JOINTS]
-    first = np.max([_relative_error(diff(value), rate) for value, rate, _ in pairs])
-    second = np.max([_relative_error(diff(rate), change) for _, rate, change in pairs])
+    first = np.max([_relative_error(_derivative(value), rate) for value, rate, _ in pairs])
+    second = np.max([_relative_error(_derivative(rate), change) for _, rate, change in pairs])
     return float(first), float(second)  # by NumPy, whose largest of a NaN and a number is the NaN
+
+
+def _derivative(curve: Any) -> Any:
+    """By the crank angle, of a curve at uniform angles of a turn, real or complex; by Fourier series."""
+    order = np.fft.fftfreq(len(curve), 1 / len(curve))
+    order[len(curve) // 2] = 0.0  # whose derivative is not known
+    change = np.fft.ifft(1j * order * np.fft.fft(curve))
+    return change if np.iscomplexobj(curve) else change.real
 
 
 def _relative_error(value: Any, reference: Any) -> float:
@@ -90,7 +98,13 @@ def file_error(path: Path, motion: Motion) -> float:
     content, measured = tomllib.loads(path.read_text(encoding="utf-8")), measure(motion)
     rider = content.get("rider", {})
     given = content["linkage"] | (rider if isinstance(rider, dict) else {})  # a rider with a name is in no design file
-    errors = [np.abs(_difference(key, given[key], measured[key])).max() for key in given if key in measured]
+    # of an arm that is shorter than any link its direction is known no better than its end
+    weights = {"gamma": np.minimum(1.0, np.abs(measured["R8"]) / SHORTEST)} if "gamma" in measured else {}
+    errors = [
+        np.abs(_difference(key, given[key], measured[key]) * weights.get(key, 1.0)).max()
+        for key in given
+        if key in measured
+    ]
     return float(np.max(errors))  # by NumPy, whose largest of a NaN and a number is the NaN
 
 

@@ -14,7 +14,6 @@ from fes_mj.simulation.mjcf import SERVO_GAIN
 from fes_mj.verification.case import VerificationCase
 from fes_mj.verification.geometry import file_checks, geometry_checks
 from fes_mj.verification.model import map_checks, model_checks
-from fes_mj.verification.problems import chain_checks, four_bar_checks
 from fes_mj.verification.references import exact_checks
 
 
@@ -80,8 +79,14 @@ QUICK: tuple[CheckGroup, ...] = (
     *(geometry_checks, file_checks, map_checks, exact_checks, model_checks, turn_checks),
     printed_checks,
 )
+
+
+def quick_groups(legs: int) -> tuple[CheckGroup, ...]:
+    """What decides about a design whenever it is simulated: by `simulate` and by `validate --quick`."""
+    return (*QUICK, two_leg_checks) if legs == 2 else QUICK
+
+
 FULL = (*QUICK, two_leg_checks, refinement_checks, ride_checks)
-BENCHMARKS = {"A02": chain_checks, "four-bar": four_bar_checks}
 
 
 def verify(case: VerificationCase, groups: tuple[CheckGroup, ...] = QUICK) -> Iterator[Check]:
@@ -92,7 +97,9 @@ def verify(case: VerificationCase, groups: tuple[CheckGroup, ...] = QUICK) -> It
 
 def benchmarks() -> Iterator[Check]:
     """Run the published problems, which do not depend on a case."""
-    for subject, run in BENCHMARKS.items():
+    from fes_mj.verification.problems import chain_checks, four_bar_checks  # need SciPy, which a turn does not
+
+    for subject, run in {"A02": chain_checks, "four-bar": four_bar_checks}.items():
         yield from _stable(run(subject), subject)
 
 

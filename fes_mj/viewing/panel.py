@@ -54,7 +54,7 @@ class Panel:
 
 def write_title(figure: Figure, design: Design, below: str) -> None:
     """At the top: the design's name and kind, and what is said of the run."""
-    _fit(figure, 0.955, f"{design.name.upper()}: {design.linkage.architecture.title}", size=13, weight="bold")
+    _fit(figure, 0.955, f"{design.name.upper()}: {design.linkage.title}", size=13, weight="bold")
     _fit(figure, 0.925, below, size=11, color=FAINT)
 
 

@@ -1,6 +1,7 @@
 """Ctrl-C and kill: earlier results stay as they were, nothing is half-written."""
 
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -123,8 +124,51 @@ def test_an_error_without_a_signal_stays_what_it_is() -> None:
     done = subprocess.run(
         [sys.executable, "-c", WRAPS, "ImportError", "0", "simulate", "d1"], capture_output=True, check=False
     )
-    assert done.returncode == 1
+    assert done.returncode == 70  # 1 says that two solvers do not agree
     assert done.stderr.endswith(b"ImportError: as others would say it\n")
+
+
+def test_too_little_memory_is_no_disagreement() -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", WRAPS, "MemoryError", "0", "simulate", "d1"], capture_output=True, text=True, check=False
+    )
+    assert (done.returncode, done.stderr.count("\n")) == (2, 1)
+    assert "not enough memory" in done.stderr
+
+
+STUDY = '[study]\nchunk = 200\n[grid]\ndesign = ["d1", "r1"]\n[sample]\nsize = 400\nR2 = [0.03, 0.16]\n'
+RUNS = {
+    "sweep": ("sweep", "s.toml", "-o", "out", "--jobs", "2", "-q"),
+    "optimize": ("optimize", "crt", "-o", "out/best.toml", "--budget", "2000", "--searches", "2", "--jobs", "2", "-q"),
+    "report": ("validate", "d1", "--quick", "-q", "--report", "out/report.html"),
+    "video": ("simulate", "d1", "-q", "--render", "out/d1.mp4"),
+}
+
+
+@pytest.mark.parametrize("part", [0.4, 0.97])
+@pytest.mark.parametrize("name", RUNS)
+def test_a_signal_at_any_time_ends_in_its_code_and_leaves_nothing_half(name: str, part: float, tmp_path: Path) -> None:
+    """At a part of the time that the whole run takes; what is there afterwards is whole, and no traceback is shown."""
+    (tmp_path / "s.toml").write_text(STUDY)
+    command = [sys.executable, "-m", "fes_mj", *RUNS[name]]
+    if name != "sweep":
+        (tmp_path / "out").mkdir()
+    begin = time.monotonic()
+    subprocess.run(command, cwd=tmp_path, check=True, capture_output=True)
+    seconds = time.monotonic() - begin
+    whole = {path.name for path in (tmp_path / "out").iterdir()}
+    shutil.rmtree(tmp_path / "out")
+    if name != "sweep":
+        (tmp_path / "out").mkdir()
+    with subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True) as process:
+        time.sleep(part * seconds)
+        process.terminate()
+        _, errors = process.communicate(timeout=PATIENCE)
+    assert process.returncode in (0, 143, -signal.SIGTERM)  # the last before the handler stands
+    assert "Traceback" not in errors
+    assert errors in ("", "fes_mj: interrupted; nothing was left half-written\n")
+    left = {path.name for path in (tmp_path / "out").iterdir()} if (tmp_path / "out").exists() else set()
+    assert left <= whole | {"best.search"}
 
 
 @pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])

@@ -43,9 +43,9 @@ def test_the_winner_is_what_the_other_commands_see(tmp_path: Path, capsys: pytes
     assert run(["simulate", str(best), "--group", "p1p3", "--timestep", str(content["timestep_s"]), "--json"]) == 0
     simulated = json.loads(capsys.readouterr().out)
     assert simulated["power_mean_W"] == pytest.approx(content["simulated_power_mean_W"], rel=1e-9)
-    swing = simulated["power_peak_to_peak_W"]
-    assert content["power_highest_W"] - content["power_lowest_W"] == pytest.approx(swing, rel=1e-9)
-    assert content["power_peak_to_peak_W"] == pytest.approx(swing, rel=1e-9)
+    swing = simulated["simulated_power_peak_to_peak_W"]
+    assert content["simulated_power_highest_W"] - content["simulated_power_lowest_W"] == pytest.approx(swing, rel=1e-9)
+    assert content["simulated_power_peak_to_peak_W"] == pytest.approx(swing, rel=1e-9)
     text = page.read_text(encoding="utf-8")
     assert f"{content['power_mean_W']:.3f}" in text
     assert "<svg" in text

@@ -30,12 +30,14 @@ def test_the_command_reports_and_resumes(study: Path, tmp_path: Path, capsys: py
     assert json.loads(capsys.readouterr().out)["found_finished"] == 144
 
 
-def test_a_study_without_turning_points_has_no_best(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_study_that_gives_nothing_is_no_success(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "study.toml"
     path.write_text('[grid]\ndesign = ["d1"]\nmoments = ["p1p2"]\nR2 = [0.4, 0.5]\n')
-    assert run(["sweep", str(path), "-o", str(tmp_path / "out"), "--jobs", "1", "--json"]) == 0
-    summary = json.loads(capsys.readouterr().out)
-    assert summary["turning"] == 0
+    assert run(["sweep", str(path), "-o", str(tmp_path / "out"), "--jobs", "1", "--json"]) == 2
+    captured = capsys.readouterr()
+    assert captured.err == f"fes_mj: {path}: none of its 2 points could be computed: rocker and coupler cannot close\n"
+    summary = json.loads(captured.out)
+    assert (summary["turning"], summary["computed"]) == (0, 0)
     assert summary["best"] is None
 
 

@@ -25,14 +25,15 @@ def test_simulate(tmp_path: Path) -> None:
     run = runs.simulate(D1, P1P2, tmp_path, legs=1)
     assert run["ok"]
     assert f"mean power {case.simulation.power_mean:.2f} W" in run["verdict"]
-    assert [row["ok"] for row in run["checks"]] == [check.ok for check in case.checks]
+    assert {check.name.replace("_", " ") for check in case.checks} < {row["name"] for row in run["checks"]}
+    assert all(row["ok"] for row in run["checks"])
 
 
 def test_a_check_that_fails_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("fes_mj.crosscheck.turn_case.check", lambda name, value, _: Check(name, value, limit=0.0))
     run = runs.simulate(D1, P1P2, tmp_path, legs=1)
     assert not run["ok"]
-    assert run["verdict"].startswith("Dynamic and static do not agree (mean_power")
+    assert run["verdict"].startswith("Dynamic and static do not agree (")
 
 
 def test_ride(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

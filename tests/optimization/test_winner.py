@@ -28,9 +28,11 @@ def winner(request: pytest.FixtureRequest) -> Winner:
 def test_smoothness_is_that_of_the_exact_dynamics(winner: Winner) -> None:
     """Not MuJoCo's: inverse dynamics at the same crank angles, within what the case's own check allows many times."""
     exact, said = winner.case.reference_power(), winner.smoothness
-    assert said["power_lowest_W"] == pytest.approx(exact.min(), abs=0.5)
-    assert said["power_highest_W"] == pytest.approx(exact.max(), abs=0.5)
-    assert said["power_peak_to_peak_W"] == pytest.approx(winner.case.summary()["power_peak_to_peak_W"], rel=1e-12)
+    assert said["simulated_power_lowest_W"] == pytest.approx(exact.min(), abs=0.5)
+    assert said["simulated_power_highest_W"] == pytest.approx(exact.max(), abs=0.5)
+    assert said["simulated_power_peak_to_peak_W"] == pytest.approx(
+        winner.case.summary()["simulated_power_peak_to_peak_W"], rel=1e-12
+    )
     population = RippleLimit(1.0, MOMENTS).ripple(winner.design)[0]
     assert said["speed_ripple"] == pytest.approx(population, rel=0.01)  # of 120 angles, see test_ripple
 
@@ -44,7 +46,7 @@ def test_reversals_are_changes_of_sign_of_the_joint_speed(winner: Winner) -> Non
 
 def test_the_table_says_all_of_it(winner: Winner) -> None:
     rows, said = dict(winner.rows), winner.smoothness
-    low, high = (said[f"power_{end}_W"] for end in ("lowest", "highest"))
+    low, high = (said[f"simulated_power_{end}_W"] for end in ("lowest", "highest"))
     assert rows["simulated power of one leg, lowest to highest, W"] == f"{low:+.0f} to {high:+.0f}"
     assert rows["the same, peak to peak, W"] == f"{high - low:.0f}"
     assert rows["ripple of the crank speed, two legs, fixed gear, %"] == f"{100 * winner.ripple:.1f}"

@@ -219,7 +219,8 @@ def test_a_large_sample_can_be_resumed(tmp_path: Path) -> None:
 def test_nothing_finished_is_an_empty_table(study: Path, tmp_path: Path) -> None:
     sweep = Sweep(load_study(study), tmp_path / "out")
     assert sweep.read().num_rows == 0
-    assert sweep.summary() == {"folder": str(tmp_path / "out"), "points": 0, "turning": 0, "best": None, "top": []}
+    counts = {"points": 0, "turning": 0, "computed": 0, "why": None}
+    assert sweep.summary() == {"folder": str(tmp_path / "out"), **counts, "best": None, "top": []}
 
 
 def test_the_summary_has_the_ten_best_of_all_chunks(done: Sweep) -> None:
