@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
 
 from fes_mj.cli.options import Cadence, Jobs, Out, PrintOptions, warn_of
-from fes_mj.common.console import print_table, progress_bar
+from fes_mj.common.console import print_table, progress_bar, say
 from fes_mj.common.errors import InputError, require_extra
 from fes_mj.common.parallel import Workers
 from fes_mj.common.writing import make_folder, require_writable
@@ -121,6 +121,8 @@ def _print(summary: dict[str, Any], name: str, study: Study) -> None:
     print_table(f"{name}: {summary['folder']}", ("", "value"), cells)
     if summary["top"]:
         _print_top(summary["top"], study)
+    if ends := summary["best_at_end_of"]:
+        say(f"note: the best has the first or last value of {', '.join(ends)}; it may lie beyond")
 
 
 def _print_top(rows: Sequence[dict[str, Any]], study: Study) -> None:

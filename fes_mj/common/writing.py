@@ -139,7 +139,7 @@ def _named(path: Path, deed: str = "written") -> Iterator[None]:
 
 
 @contextmanager
-def _beside(path: Path) -> Iterator[Path]:
+def temporary_beside(path: Path) -> Iterator[Path]:
     """An empty temporary file in the folder of `path`, with its suffix; gone afterwards, whenever a signal comes.
 
     Its lock is held meanwhile, by which others tell it from what a killed run left.
@@ -165,7 +165,7 @@ def replacing(path: Path) -> Iterator[Path]:
 
     Raises InputError for what the system refuses: a full disk, a folder that is gone or cannot be written to.
     """
-    with _beside(path) as temporary:
+    with temporary_beside(path) as temporary:
         yield temporary
         temporary.replace(path)
 
@@ -201,8 +201,8 @@ def write_files(contents: Mapping[Path, str | bytes], unnamed: Collection[Path] 
         records[folder / RECORD] = "\n".join(dict.fromkeys([*_recorded(folder), *own, ""])).encode()
     data = records | data  # should a kill come between, what stands there is known, whether new or old
     with ExitStack() as stack:
-        new = {path: stack.enter_context(_beside(path)) for path in data}
-        old = {path: stack.enter_context(_beside(path)) for path in data if path.exists()}
+        new = {path: stack.enter_context(temporary_beside(path)) for path in data}
+        old = {path: stack.enter_context(temporary_beside(path)) for path in data if path.exists()}
         for path, content in data.items():
             with _named(path):
                 new[path].write_bytes(content)

@@ -165,7 +165,14 @@ class Sweep(Brief):
             top = sorted(top, key=lambda row: -float(row["power_mean_W"]))[:TOP]
         best = top[0] if top else None
         counts = {"points": points, "turning": turning, "computed": computed, "why": None if computed else why}
-        return {"folder": str(self.folder), **counts, "best": best, "top": top}
+        return {"folder": str(self.folder), **counts, "best": best, "best_at_end_of": self._ends(best), "top": top}
+
+    def _ends(self, best: dict[str, Any] | None) -> list[str]:
+        """Which varied numbers have, at the best point, the first or last of their values: the best may lie beyond."""
+        values = self.study.grid | self.study.sample
+        return [
+            axis for axis in self.study.varied_numbers if best and best[axis] in (min(values[axis]), max(values[axis]))
+        ]
 
 
 def run_sweep(study: str | Path, folder: str | Path, workers: Workers = HERE) -> Sweep:

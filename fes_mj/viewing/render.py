@@ -4,7 +4,6 @@ import math
 import subprocess
 from collections.abc import Iterable, Iterator
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 import mujoco
 import numpy as np
@@ -12,7 +11,7 @@ import numpy as np
 from fes_mj.common.arrays import IntArray, Picture
 from fes_mj.common.console import progress_bar
 from fes_mj.common.errors import InputError, MissingPartError, require_extra
-from fes_mj.common.writing import replacing
+from fes_mj.common.writing import replacing, temporary_beside
 from fes_mj.crosscheck.ride_case import RideCase
 from fes_mj.crosscheck.turn_case import Case
 from fes_mj.linkage.shapes import lowest_point
@@ -97,9 +96,8 @@ def write_video(path: Path, frames: Iterable[Picture], count: int, quiet: bool =
     with (
         progress_bar("rendering, frames", count, quiet) as advance,
         replacing(path) as beside,
-        TemporaryDirectory() as folder,
+        temporary_beside(path) as once,
     ):
-        once = Path(folder) / "once.mp4"
         try:
             with mediapy.VideoWriter(once, shape, **look) as writer:
                 for frame in frames:

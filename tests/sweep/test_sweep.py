@@ -220,7 +220,14 @@ def test_nothing_finished_is_an_empty_table(study: Path, tmp_path: Path) -> None
     sweep = Sweep(load_study(study), tmp_path / "out")
     assert sweep.read().num_rows == 0
     counts = {"points": 0, "turning": 0, "computed": 0, "why": None}
-    assert sweep.summary() == {"folder": str(tmp_path / "out"), **counts, "best": None, "top": []}
+    assert sweep.summary() == {"folder": str(tmp_path / "out"), **counts, "best": None, "best_at_end_of": [], "top": []}
+
+
+def test_a_best_at_the_end_of_its_range_says_so(tmp_path: Path) -> None:
+    (path := tmp_path / "study.toml").write_text('[grid]\ndesign = ["d1"]\ngear_ratio = [1.0, 1.5, 2.0]\n')
+    sweep = Sweep(load_study(path), tmp_path / "out")
+    sweep.run()
+    assert sweep.summary()["best_at_end_of"] == ["gear_ratio"]  # power is proportional to it
 
 
 def test_the_summary_has_the_ten_best_of_all_chunks(done: Sweep) -> None:
