@@ -8,13 +8,14 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from itertools import product
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from fes_mj.common.console import track
 from fes_mj.common.errors import require_extra
 from fes_mj.common.units import KMH, RPM
+from fes_mj.crosscheck.ride_case import RideCase
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.design_file import DESIGNS, load_design
 from fes_mj.moments.files import load_moments, sampled_moments
@@ -25,13 +26,15 @@ from fes_mj.paper.captions import Rows, table
 from fes_mj.riding.ride import TRANSMISSIONS, Ride, Road, balancing_slope
 from fes_mj.riding.starts import Starts, starts
 from fes_mj.riding.trace import Trace, ride as solved
+from fes_mj.riding.verdict import FASTEST_CADENCE
 
 DRAWS = 48  # of muscles; a standard deviation of so many is known to a tenth of itself
 START_DRAWS = 12  # of these, in the search for starts, which takes some thirty times as long as a ride; to a fifth
 ANGLES = 12  # crank angles over half a turn, from which it is tried to start
 SHORT = 20.0  # s: what rides so long from rest goes on
-RATIOS = np.geomspace(0.25, 4.0, 17)  # times the design's own gear ratio
+RATIOS = np.geomspace(0.125, 4.0, 21)  # times the design's own gear ratio
 SLOPES = (0.0, 0.02)  # on which the best gear ratio is sought
+AT_END = " (end of the range)"
 SEED = 2007
 THREADS = 2  # the compiled solver lets others run beside it
 
@@ -41,7 +44,7 @@ class Riding:
     """Of one design, group and transmission: rides with the muscles as they are known best, then with those drawn.
 
     slope: that balances the mean power of speed-free muscles at 5.71 km/h. starts: of START_DRAWS of these muscles.
-    gears: by slope, speed at each of RATIOS, m/s, 0 where it stops.
+    gears: by slope, the gear ratio with which it is fastest; None where none will do.
     """
 
     design: Design
@@ -51,11 +54,19 @@ class Riding:
     flat: list[Trace]
     uphill: list[Trace]
     starts: list[Starts]
-    gears: dict[float, list[float]]
+    gears: dict[float, "Gear | None"]
 
     @property
     def names(self) -> tuple[str, str, str]:
         return self.design.name.upper(), self.group, self.transmission
+
+
+class Gear(NamedTuple):
+    """A gear ratio and the speed with it, m/s. at_end: whether no lower, or no higher, ratio was tried."""
+
+    ratio: float
+    speed: float
+    at_end: bool
 
 
 def ride_all(silent: bool) -> list[Riding]:
@@ -90,11 +101,18 @@ def _riding(design: Design, group: str, muscles: list[JointMoments], transmissio
             [*threads.map(solved, level)],
             [*threads.map(solved, uphill)],
             [*threads.map(lambda ride: starts(ride, ANGLES), brief)],
-            {
-                slope: [trace.mean_speed or 0.0 for trace in threads.map(solved, rides)]
-                for slope, rides in on_slopes.items()
-            },
+            {slope: _fastest([*threads.map(solved, rides)]) for slope, rides in on_slopes.items()},
         )
+
+
+def _fastest(traces: list[Trace]) -> Gear | None:
+    """The best of the gears of RATIOS that need no cadence beyond what is known, and of which MuJoCo says the same."""
+    known = [trace for trace in traces if trace.mean_speed and (trace.cadence or 0.0) <= FASTEST_CADENCE]
+    for trace in sorted(known, key=lambda trace: -(trace.mean_speed or 0.0)):
+        if RideCase(replace(trace.ride, duration=SHORT)).agrees:
+            at_end = trace in (traces[0], traces[-1])
+            return Gear(trace.ride.design.linkage.gear_ratio, trace.mean_speed or 0.0, at_end)
+    return None
 
 
 @table("riding", draws=str(DRAWS))
@@ -125,14 +143,13 @@ def start_table(rides: list[Riding]) -> Rows:
         )
 
 
-@table("gears")
+@table("gears", ratios=str(len(RATIOS)), rpm=f"{FASTEST_CADENCE / RPM:.0f}")
 def gear_table(rides: list[Riding]) -> Rows:
     """The gear ratio with which each is fastest on the flat and uphill."""
     for riding in rides:
-        cells: list[float | None] = []
-        for speeds in riding.gears.values():
-            best, gear_ratio = int(np.argmax(speeds)), riding.design.linkage.gear_ratio
-            cells += [float(RATIOS[best]) * gear_ratio, speeds[best] / KMH] if speeds[best] > 0 else [None, None]
+        cells: list[str | float | None] = []
+        for gear in riding.gears.values():
+            cells += [f"{gear.ratio:.2f}{AT_END * gear.at_end}", gear.speed / KMH] if gear else [None, None]
         yield *riding.names, riding.design.linkage.gear_ratio, *cells
 
 
