@@ -6,7 +6,7 @@ from cyclopts import Parameter
 from cyclopts.validators import Number
 
 from fes_mj.cli.options import DesignName, Flag, MomentsOptions
-from fes_mj.common.errors import require_extra
+from fes_mj.common.errors import InputError, require_extra
 from fes_mj.linkage.design_file import load_design
 
 PORT, THIS_MACHINE = 8026, "127.0.0.1"
@@ -30,6 +30,8 @@ def explore(
         browser: Open the page in the browser.
         debug: Print where an answer failed, if that was not expected.
     """
+    if not host:  # which would be all addresses
+        raise InputError(f"--host is {host!r}; it must be a name or an address of this machine")
     loaded, moments = load_design(design), options.load_moments()
     require_extra("explore", "starlette", "uvicorn")
     from fes_mj.explore.answers import Answers

@@ -165,8 +165,6 @@ class Server(uvicorn.Server):
 
 
 def _listen(host: str, port: int) -> socket.socket:
-    if not host:
-        raise InputError(f"--host is {host!r}; it must be a name or an address of this machine")
     try:
         family, _, _, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
         return socket.create_server(address, family=family)

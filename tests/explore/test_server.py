@@ -174,9 +174,9 @@ def test_a_port_in_use_is_one_message(server: Server, answers: Answers) -> None:
         Server(answers, "127.0.0.1", port(server))
 
 
-@pytest.mark.parametrize("host", ["192.0.2.1", "no.such.name.invalid", "", "a" * 70 + ".example", "x\0"])
+@pytest.mark.parametrize("host", ["192.0.2.1", "no.such.name.invalid", "a" * 70 + ".example", "x\0"])
 def test_an_address_of_others(answers: Answers, host: str) -> None:
-    with pytest.raises(InputError, match=r"host is ''|cannot listen on"):  # 192.0.2.0/24 is TEST-NET, nobody's
+    with pytest.raises(InputError, match=r"^cannot listen on"):  # 192.0.2.0/24 is TEST-NET, nobody's
         Server(answers, host, 0)
 
 
