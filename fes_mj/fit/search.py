@@ -14,9 +14,9 @@ from fes_mj.statics.work_table import WorkTable
 # Seats tried for a rider: a grid over the limits, then generations of a population on each of the three aims. On the
 # last one powers that count as equal narrow from the first of _SLACK to POWER_EQUAL, so that the population can follow
 # the curved ridge on which they lie; tests/fit/test_search.py has what that leaves against every seat of a fine grid.
-_GRID, _POPULATION, _GENERATIONS = (9, 7, 5), 40, (25, 45, 60)
+_GRID, _POPULATION, _GENERATIONS = (9, 7, 5), 40, (60, 80, 90)
 _SLACK, _NARROWING = 1.0, 0.6  # W, and the share of the generations in which it narrows
-_STEP = np.array([1e-4, 1e-4, np.radians(0.01)])  # of what a workshop can set: m, m, rad
+_STEP = np.array([1e-5, 1e-5, np.radians(0.001)])  # finer than a seat can be set: m, m, rad
 _AT_ONCE = 20_000  # turns in memory
 
 

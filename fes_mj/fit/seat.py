@@ -103,7 +103,7 @@ class SeatFit(Brief):
 def fit_seat(design: Design, rider: Rider, moments: JointMoments, limits: SeatLimits = SEAT_LIMITS) -> SeatFit:
     """The best seat of a design for a rider: least outside the moments' range, then most mean power, then nearest.
 
-    By seats.losses, in steps of 0.1 mm and 0.01 deg.
+    By seats.losses, in steps of 0.01 mm and 0.001 deg.
 
     That no seat within the limits suits is a result as well. Raises AssemblyError for a linkage that cannot turn
     whoever sits where, InputError for a cadence that cannot be run.

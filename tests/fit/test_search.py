@@ -5,11 +5,12 @@ import pytest
 
 import fes_mj
 from fes_mj.fit.search import best_seats
-from fes_mj.fit.seats import OUTSIDE_EQUAL, POWER_EQUAL, SEAT_LIMITS, Scores, Seats, score
+from fes_mj.fit.seats import SEAT_LIMITS, Scores, Seats, score
 from fes_mj.linkage.design_file import DESIGNS
 from fes_mj.statics.work_table import WorkTable
 
 TABLES = {group: WorkTable.of(fes_mj.load_moments(group)) for group in ("p1p2", "p1p3")}
+OUTSIDE_EQUAL, POWER_EQUAL = 0.1, 0.01  # deg, W: what counts as equal
 FINE, CLOUD, ROUNDS, SHRINK = (36, 31, 41), 400, 12, 0.75
 SHORTER = 0.002  # m, by which a way may be shorter that the search has not found
 
