@@ -44,6 +44,8 @@ def run_tasks(
     joblib = require_extra("optimize", "joblib")
     # after an interruption joblib counts the tasks it has lost
     warnings.filterwarnings("ignore", r"\d+ tasks have been successfully executed", UserWarning)
+    # and so does the process that removes its shared files when this one ends at a signal, which takes these options
+    sys.warnoptions.append("ignore:resource_tracker:UserWarning")
     with _backend(joblib, workers):
         parallel = joblib.Parallel(return_as="generator_unordered", batch_size=1)
         try:
