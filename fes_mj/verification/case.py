@@ -14,7 +14,7 @@ from fes_mj.verification.references import Curves, differences, exact_curves
 from fes_mj.verification.refinement import refine
 
 if TYPE_CHECKING:
-    from fes_mj.crosscheck.ride_case import RideCase
+    from fes_mj.crosscheck import ride_case
 
 STEEP = Road(slope=0.15)  # no leg climbs it: the tricycle stops and rolls back
 STEEP_DURATION = 3.0  # s
@@ -53,7 +53,7 @@ class VerificationCase(Case):
         return replace(self, legs=2, label=f"{self.name}, two legs")
 
     @cached_property
-    def rides(self) -> "list[RideCase]":
+    def rides(self) -> "list[ride_case.RideCase]":
         """Short rides launched at the speed of the cadence: flat with either transmission, and rolling back."""
         from fes_mj.crosscheck.ride_case import RideCase  # needs SciPy, which a turn does not
 
