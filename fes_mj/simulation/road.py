@@ -1,7 +1,7 @@
 """The ride in MuJoCo: run, and described as the reduced model describes it."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import Any, ClassVar, TypeAlias
 
@@ -13,14 +13,15 @@ from fes_mj.common.arrays import FloatArray
 from fes_mj.common.machine_code import COMPILED, readable
 from fes_mj.linkage.legs import TWO_LEGS, Leg
 from fes_mj.riding.ride import Ride
-from fes_mj.riding.trace import Trace
+from fes_mj.riding.trace import Trace, ride as ride_by_equation
 from fes_mj.simulation.appearance import Spec
 from fes_mj.simulation.bench import joint_drives
 from fes_mj.simulation.road_control import RoadControl, act, memory_of, road_control
 from fes_mj.simulation.road_mjcf import DRIVETRAIN, ROAD, TIMESTEP, build_road_mjcf, start_state
-from fes_mj.simulation.stepping import PRE_ROLL, Loop, Run, Sensors, controlled_loop, energy, run_loop
+from fes_mj.simulation.stepping import Loop, Run, Sensors, controlled_loop, energy, run_loop
 from fes_mj.statics.validity import turning_in_range
 
+INSTANT = 1e-5  # s, in which the acceleration at the start is read off
 MakeControl: TypeAlias = Callable[[mujoco.MjModel], RoadControl]  # the control of a ride in its model
 
 
@@ -135,15 +136,19 @@ def ride_on_road(
     mujoco.mj_resetDataKeyframe(model, data, 0)
     start_energy = sum(energy(model, data))
     _start_half_a_step_early(model, ride)
-    if ride.launch:
-        probe = Sensors(model, run_loop(model, loop, PRE_ROLL, pre_roll=0).sensors)
-        gain = {name: float(np.diff(probe[f"{name}_speed"][PRE_ROLL // 2 : -1]).mean()) for name in (ROAD, "crank")}
-        _start_half_a_step_early(model, ride, {name: change / timestep for name, change in gain.items()})
     run = run_loop(model, loop, round((until or ride.duration) / timestep) + 1, pre_roll=0)
     return record(ride, timestep, model, start_energy, run)
 
 
-def _start_half_a_step_early(model: mujoco.MjModel, ride: Ride, gain: dict[str, float] | None = None) -> None:
-    """Give the keyframe the speeds that MuJoCo has there: they lag its positions by half a step. gain: start_state."""
-    for joint, (_, speed) in start_state(ride, model.opt.timestep, gain).items():
+def _start_half_a_step_early(model: mujoco.MjModel, ride: Ride) -> None:
+    """Give the keyframe the speeds that MuJoCo has there: they lag its positions by half a step.
+
+    What changes in that time is as the reduced equation has it: that the ride begins at its launch speed is no result.
+    """
+    gain = {ROAD: 0.0, "crank": 0.0}
+    if ride.launch:
+        begun = ride_by_equation(replace(ride, duration=INSTANT))
+        gain = {ROAD: begun.speed[-1] - begun.speed[0], "crank": begun.crank_speed[-1] - begun.crank_speed[0]}
+    rates = {name: float(change) / INSTANT for name, change in gain.items()}
+    for joint, (_, speed) in start_state(ride, model.opt.timestep, rates).items():
         model.key_qvel[0, model.joint(joint).dofadr[0]] = speed

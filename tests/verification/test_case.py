@@ -9,7 +9,7 @@ from fes_mj.simulation import stepping
 from fes_mj.verification.case import VerificationCase
 from fes_mj.verification.suite import FULL, verify
 
-MOST_RUNS = 12 + 6  # of the bench, and three rides with a probe of their start each
+MOST_RUNS = 12 + 6  # of the bench, and three rides, each with a trial at twice the step
 
 
 @pytest.mark.long
