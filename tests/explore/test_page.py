@@ -1,11 +1,15 @@
 """The page in a real browser: what a designer sees and does."""
 
 import re
+import threading
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 import fes_mj
+from fes_mj.common.reading import Section
+from fes_mj.explore.answers import Answers
 from fes_mj.linkage.design_file import design_toml
 from fes_mj.linkage.riders import populations
 from fes_mj.linkage.variables import replaced
@@ -165,10 +169,33 @@ def test_verdicts_appear_in_sight(page: Page) -> None:
     assert box["y"] + box["height"] <= LAPTOP[1]
     page.page.click("#verdict summary")
     assert page.page.locator("#verdict td.good").count() == page.page.locator("#verdict tbody tr").count()
+
+
+@pytest.mark.parametrize("curves_first", [True, False])
+def test_a_verdict_says_of_what_it_is(page: Page, answers: Answers, curves_first: bool) -> None:
+    """Whichever comes first when the design changes meanwhile: its curves, or the verdict of what it was."""
+    turn, may_answer = answers.by_name["turn"], threading.Event()
+
+    def wait(question: Section) -> dict[str, Any]:
+        may_answer.wait(60)
+        return turn(question)
+
+    answers.by_name["turn"] = wait
     page.page.click("text=Simulate")
-    page.set("R6", 11)
+    page.type("R6", 11)
+    before = page.updates
+    page.page.press("#number-R6", "Enter")
+    if curves_first:
+        may_answer.set()
+        page.settled(before)
     page.page.wait_for_selector("#verdict details")
-    assert page.page.inner_text("#verdict p").startswith("Of the design as it was: Dynamic and static agree")
+    may_answer.set()
+    page.settled(before)
+    assert page.page.inner_text("#verdict p").startswith("Earlier, of d1: Dynamic and static agree")
+    page.after(lambda: page.page.click("#undo"))
+    assert page.page.inner_text("#verdict p").startswith("Dynamic and static agree")
+    page.choose("#legs", "2")
+    assert page.page.inner_text("#verdict p").startswith("Earlier, of d1: ")
 
 
 def test_a_seat_is_fitted_and_taken(page: Page, tmp_path: Path) -> None:

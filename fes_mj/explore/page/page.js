@@ -36,7 +36,7 @@ const scene = new Scene($("scene"), start.space);
 const powerPlot = new Plot($("power-plot"), (angle) => hold(angle));
 const jointsPlot = new Plot($("joints-plot"), (angle) => hold(angle));
 const sliders = new Sliders(document.querySelectorAll("[data-owner]"), start.dimensions, changed);
-const runs = new Runs($("runs"), $("verdict"), asRun, snapshot, take);
+const runs = new Runs($("runs"), $("verdict"), asRun, () => JSON.stringify(asked()), take);
 
 // ---- The design in hand. What it was stands in the browser's history, and in the address so that it can be sent.
 
@@ -131,7 +131,7 @@ let busy = false, again = null;
 async function refresh(dragging = false) {
   if (busy) { again = { dragging }; return; }
   busy = true;
-  const before = snapshot(), question = copy(asked());
+  const question = copy(asked());
   try {
     await compare(question.legs);
     state.turn = { legs: question.legs, ...(await ask("turn", question)) };
@@ -141,7 +141,7 @@ async function refresh(dragging = false) {
     tell(error.message);
   }
   busy = false;
-  if (before !== runs.of) runs.forget();
+  runs.compare();
   const next = again;
   again = null;
   if (next) refresh(next.dragging);
@@ -318,7 +318,7 @@ $("legs").addEventListener("change", () => refresh());
 $("limits").addEventListener("change", () => show(false));
 $("compared").addEventListener("change", () => refresh());
 $("design").addEventListener("change", (event) => load(start.designs[event.target.value]));
-$("moments").addEventListener("change", (event) => { state.moments = event.target.value; runs.forget(); refresh(); });
+$("moments").addEventListener("change", (event) => { state.moments = event.target.value; refresh(); });
 $("kind").addEventListener("change", attempt((event) => change({ kind: event.target.value })));
 $("branch").addEventListener("change", attempt((event) => change({ branch: event.target.value })));
 $("take-rider").addEventListener("click", attempt(async () => {

@@ -1,27 +1,30 @@
-// A run, its progress and its verdict, kept until the design is another.
+// A run, its progress and its verdict, which says so when something else has come into the hand since.
 
 import { ask } from "./server.js";
 
 export class Runs {
-  // question: what a run is asked. snapshot: the design as it is now, as a text. onDesign: takes the one that a run made.
-  constructor(bar, box, question, snapshot, onDesign) {
+  // question: what a run is asked. inHand: what is asked about now, as a text. onDesign: takes the one that a run made.
+  constructor(bar, box, question, inHand, onDesign) {
     this.buttons = [...bar.querySelectorAll("[data-run]")];
     this.cancel = bar.querySelector("#cancel");
-    Object.assign(this, { box, question, snapshot, onDesign });
-    this.of = null; // the snapshot that was run
+    Object.assign(this, { box, question, inHand, onDesign });
+    this.of = null; // what was in the hand when it was run
+    this.earlier = document.createElement("span");
     for (const button of this.buttons) button.addEventListener("click", () => this.run(button));
     this.cancel.addEventListener("click", () => this.stop.abort());
   }
 
-  forget() {
-    if (this.cancel.hidden) this.box.replaceChildren();
+  // To be called when something else may have come into the hand.
+  compare() {
+    this.earlier.hidden = this.of === this.inHand();
   }
 
   async run(button) {
     const { box } = this, line = document.createElement("p"), question = this.question();
     if (!question) return;
-    const say = (text) => (line.textContent = `${button.textContent}, ${question.design.name}: ${text}`);
-    this.of = this.snapshot();
+    const { name } = question.design; // which may change meanwhile
+    const say = (text) => (line.textContent = `${button.textContent}, ${name}: ${text}`);
+    this.of = this.inHand();
     this.stop = new AbortController();
     this.running(true);
     say("running…");
@@ -29,7 +32,9 @@ export class Runs {
     try {
       const answer = await ask(button.dataset.run, question, { onProgress: say, signal: this.stop.signal });
       line.className = answer.ok ? "good" : "bad";
-      line.textContent = `${this.of === this.snapshot() ? "" : "Of the design as it was: "}${answer.verdict}`;
+      this.earlier.textContent = `Earlier, of ${name}: `;
+      this.compare();
+      line.replaceChildren(this.earlier, answer.verdict);
       if (answer.design) line.append(" ", this.offer(answer.design));
       if (answer.checks) box.append(table(answer.checks));
     } catch (error) {
@@ -49,7 +54,8 @@ export class Runs {
     button.addEventListener("click", () => {
       button.remove();
       this.onDesign(design);
-      this.of = this.snapshot();
+      this.of = this.inHand();
+      this.compare();
     });
     return button;
   }
