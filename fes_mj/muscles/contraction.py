@@ -14,7 +14,7 @@ CURVATURE = 0.25  # Hill's a / F0 (Zajac 1989)
 PLATEAU = 1.4  # largest force of a lengthening muscle per isometric force (Thelen 2003)
 # Of the lengthening branch (7.56 in Thelen's units): at rest force rises 2.5 times as fast with lengthening as it falls
 # with shortening; Katz, J. Physiol. 96 (1939) 45-64, found up to six times.
-_LENGTHENING = 7.56 / CURVATURE
+LENGTHENING = 7.56 / CURVATURE
 
 
 def force_length(fibre: FloatArray) -> FloatArray:
@@ -29,7 +29,7 @@ def force_velocity(shortening: FloatArray) -> FloatArray:
     speed = np.maximum(shortening, 0)
     force = (1 - np.minimum(speed, 1)) / (1 + speed / CURVATURE)
     np.clip(shortening, -1, 0, out=speed)  # of lengthening; the other branch is 1 there
-    speed *= (PLATEAU - 1) * (_LENGTHENING + 1) / (_LENGTHENING * speed - 1)
+    speed *= (PLATEAU - 1) * (LENGTHENING + 1) / (LENGTHENING * speed - 1)
     force += speed
     return force
 

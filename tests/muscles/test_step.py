@@ -1,0 +1,112 @@
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from fes_mj.common.machine_code import readable
+from fes_mj.linkage import kinematics
+from fes_mj.linkage.design_file import DESIGNS, load_design
+from fes_mj.muscles.activation import answer, trapezium
+from fes_mj.muscles.anatomy import GROUPS
+from fes_mj.muscles.contraction import PLATEAU
+from fes_mj.muscles.pull import pull
+from fes_mj.muscles.step import LegMuscles, Stimulus, activated, joint_moments, stimulation, tension, weights
+from fes_mj.muscles.timing import ANGLES, Windows, activation
+
+GROUP_NUMBERS = range(len(GROUPS))
+
+
+def curves(leg, motion, cadence, active):
+    """Knee and hip moments along a motion under constant activations of the groups, shape (2, angles)."""
+    angle, rate = motion.joint_angle, motion.joint_rate
+    states = zip(angle.knee, angle.hip, cadence * rate.knee, cadence * rate.hip, strict=True)
+    return np.array([joint_moments(leg, active, *map(float, state)) for state in states]).T
+
+
+@pytest.mark.parametrize("name", DESIGNS)
+def test_moments_are_those_of_the_turn(name, riders):
+    design = load_design(name)
+    motion, cadence = kinematics.solve(design, ANGLES[::20]), design.linkage.cadence
+    for row in (0, 5):
+        pulled = pull(riders.taken([row]), motion, cadence).moment
+        leg = readable(LegMuscles.of(riders.taken([row]), design.rider))
+        for group in GROUP_NUMBERS:
+            alone = curves(leg, motion, cadence, np.eye(len(GROUPS))[group])
+            for joint, curve in zip(("knee", "hip"), alone, strict=True):
+                expected = pulled[joint][group, 0, 0]
+                assert curve == pytest.approx(expected, rel=1e-12, abs=1e-12 * np.abs(expected).max())
+
+
+def test_moments_are_the_groups_together(riders):
+    design = load_design("d2")
+    motion = kinematics.solve(design, ANGLES[::60])
+    leg, share = readable(LegMuscles.of(riders.taken([2]), design.rider)), np.array([0.3, 0.5, 0.7])
+    apart = [curves(leg, motion, 9.0, row) for row in np.diag(share)]
+    assert curves(leg, motion, 9.0, share) == pytest.approx(np.sum(apart, axis=0), rel=1e-12)
+
+
+def test_fibres_do_the_work_that_joints_do(riders):
+    """Moments times rates are what the lengths lose times the tension, by differences of the lengths alone."""
+    design, step = load_design("d1"), 1e-5
+    leg = LegMuscles.of(riders.taken([1]), design.rider)
+    knee, hip, rates = 1.9, 1.6, np.array([2.0, -1.5])
+
+    def length(muscle, seconds):
+        bent = leg.straight - np.array([knee, hip]) - seconds * rates
+        return np.polynomial.polynomial.polyval2d(*bent, leg.lengths[muscle])
+
+    power = 0.0
+    for muscle in range(len(leg.group)):
+        speed = (length(muscle, step) - length(muscle, -step)) / (2 * step)
+        parameters = (leg.optimal, leg.slack, leg.thickness, leg.max_speed)
+        pulled = tension(length(muscle, 0), speed, *(float(column[muscle]) for column in parameters))
+        power -= leg.force[muscle] * pulled * speed
+    moments = joint_moments(readable(leg), np.ones(len(GROUPS)), knee, hip, *rates.tolist())
+    assert moments @ rates == pytest.approx(power, rel=1e-6)
+
+
+def test_tension_is_hills_at_its_ends():
+    muscle = (0.1, 0.3, 0.0, 0.8)
+    ends = [tension(0.4, speed, *muscle) for speed in (0.0, -0.8, -5.0, 0.8, 5.0)]
+    assert ends == pytest.approx([1, 0, 0, PLATEAU, PLATEAU])
+    assert tension(0.3, 0.0, *muscle) == tension(0.2, 0.0, *muscle) == 0
+
+
+def test_stimulation_is_the_trapezium_over_any_turns():
+    windows = Windows(np.reshape([300.0, 10, 0], (3, 1, 1)), np.reshape([100.0, 15, 0], (3, 1, 1)))
+    stimulus, angles = Stimulus.of(windows, cadence=7.0), np.linspace(-7, 14, 211)
+    for group in GROUP_NUMBERS:
+        expected = trapezium(angles - stimulus.on[group], stimulus.width[group], stimulus.ramp)
+        given = [stimulation(readable(stimulus), group, angle) for angle in angles.tolist()]
+        assert given == pytest.approx(expected, abs=1e-14)
+
+
+def test_steps_of_activation_are_those_of_the_turn(riders):
+    member, turn = riders.taken([4]), 0.8
+    rise, fall = float(member["rise_s"].item()), float(member.fall.item())
+    stimulus = trapezium(ANGLES - 1.0, 2.0, 0.4)
+    expected = answer(stimulus, turn, rise, fall)
+    step, value = turn / len(ANGLES), float(expected[0])
+    rising, falling = weights(step, rise), weights(step, fall)
+    for before, after, then in zip(stimulus, np.roll(stimulus, -1), np.roll(expected, -1), strict=True):
+        value = activated(value, float(before), float(after), rising, falling)
+        assert value == pytest.approx(then, abs=2e-7)  # a turn may end so far from where it began
+
+
+def test_fine_steps_tell_what_a_turn_of_whole_degrees_leaves_open(riders):
+    """The delay and the corners of a window lie between the degrees; both answers are those of the same rider."""
+    design, member = load_design("trt"), riders.taken([3])
+    windows = Windows(np.full((3, 1, 1), 205.0), np.full((3, 1, 1), 95.0))
+    cadence, steps = design.linkage.cadence, 3600
+    expected = activation(windows, member, cadence)[0, 0, 0]
+    leg, stimulus = LegMuscles.of(member, design.rider), Stimulus.of(windows, cadence)
+    shift = cadence * leg.delay
+    angles = np.arange(-4 * steps, steps) * (2 * np.pi / steps)
+    given = [stimulation(readable(stimulus), 0, angle - shift) for angle in angles.tolist()]
+    rising, falling = (weights(2 * np.pi / cadence / steps, constant) for constant in (leg.rise, leg.fall))
+    values = [0.0]
+    for before, after in pairwise(given):
+        values.append(activated(values[-1], before, after, rising, falling))
+    # what a corner between two degrees hides of the stimulation's area, at most, per time constant
+    hidden = (2 * np.pi / len(ANGLES)) ** 2 / (8 * stimulus.ramp) / (cadence * leg.rise)
+    assert values[4 * steps :: 10] == pytest.approx(expected, abs=hidden)
