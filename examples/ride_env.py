@@ -146,9 +146,9 @@ Policy = Callable[[NDArray[np.float64]], NDArray[Any]]
 
 
 def table_policy(env: RideEnv) -> Policy:
-    """Stimulate each group in its core window (`fes_mj stimulation`), advanced by what the crank turns in the lag."""
+    """Stimulate each group in its core window, advanced by what the crank turns in the lag."""
     windows: dict[tuple[str, str], list[Window]] = {channel: [] for channel in CHANNELS}
-    for window in stimulation(env.design, [env.design.linkage.cadence]):
+    for window in stimulation(env.design):
         windows[window.leg, window.muscle].append(window)
 
     def policy(observation: NDArray[np.float64]) -> NDArray[Any]:

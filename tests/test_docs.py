@@ -81,9 +81,11 @@ def test_every_room_is_in_the_structure() -> None:
 
 
 def test_the_keys_of_the_windows_are_those_of_the_file(tmp_path: Path) -> None:
-    assert run(["stimulation", "d1", "-q", "--csv", str(tmp_path / "windows.csv")]) == 0
-    header = (tmp_path / "windows.csv").read_text().splitlines()[0].split(",")
-    for name in re.findall(r"`(\w+_(?:deg|rpm|Hz|s))`", (DOCS / "stimulation.md").read_text()):
+    header: list[str] = []
+    for number, options in enumerate((("--drive", "moments"), ("--cadence", "60"))):
+        assert run(["stimulation", "d1", "-q", *options, "--csv", str(tmp_path / f"{number}.csv")]) == 0
+        header += (tmp_path / f"{number}.csv").read_text().splitlines()[0].split(",")
+    for name in re.findall(r"`(\w+_(?:deg|rpm|W|effort))`", (DOCS / "stimulation.md").read_text()):
         assert name in header or f"{name.removesuffix('_deg')}_on_deg" in header, name
 
 

@@ -6,10 +6,10 @@ from typing import Literal
 
 from cyclopts import Group, Parameter
 
-from fes_mj.cli.options import LoadOptions, needs, speed_at
+from fes_mj.cli.options import LoadOptions, MomentsOptions, needs, speed_at
 from fes_mj.common.errors import InputError
 from fes_mj.linkage.design_file import load_design
-from fes_mj.muscles.riders import load_riders
+from fes_mj.muscles.riders import Riders, load_riders
 from fes_mj.muscles.timing import DUTY
 from fes_mj.statics.muscle_static import MuscleStatic
 
@@ -34,15 +34,28 @@ class DriveOptions:
     duty: float = DUTY
     muscles: Path | None = None
 
+    def load_riders(self, options: MomentsOptions) -> Riders:
+        """Whose muscles. Raises InputError for moments of which no muscles are known."""
+        if options.moments and not self.muscles:
+            trial = options.moments[0]
+            raise InputError(
+                f"--moments say nothing of muscles; `fes_mj moments {trial} --fit-muscles -o RIDER.npz` finds muscles "
+                "that may have given them, for --muscles RIDER.npz"
+            )
+        return load_riders(self.muscles or options.group or "p1p2")
+
     def solve(self, options: LoadOptions, name: str) -> MuscleStatic:
         """A design driven by muscles. Raises InputError for options that do not go together."""
         if options.torque_velocity:
             raise InputError("--torque-velocity is of moments; --drive muscles has the speed dependence of each muscle")
-        if options.moments and not self.muscles:
-            raise InputError(
-                "--moments say nothing of muscles; give the riders that were identified from them with --muscles "
-                "RIDERS.npz, or a --group"
-            )
-        design, riders = load_design(name, options.dims), load_riders(self.muscles or options.group or "p1p2")
+        design, riders = load_design(name, options.dims), self.load_riders(options)
         speed = speed_at(options.cadence, design)
         return MuscleStatic.solve(design, riders, speed, self.timing, self.duty, options.legs)
+
+
+@Parameter(name="*", group=Group("Muscles"))
+@dataclass
+class MusclesFirst(DriveOptions):
+    """The same where muscles drive unless moments are asked for."""
+
+    drive: Literal["moments", "muscles"] = "muscles"

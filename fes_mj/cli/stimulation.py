@@ -1,18 +1,26 @@
-"""`fes_mj stimulation`: at which crank angles to stimulate which muscles."""
+"""`fes_mj stimulation`: settings of a stimulator for a design and seat, or where moments drive its crank."""
 
-import math
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
+import numpy as np
 from cyclopts import Parameter
 
-from fes_mj.cli.options import Cadence, DesignName, Dims, Lag, Legs, PrintOptions, bounds, require_lag, speed_at
+from fes_mj.cli.drive import MusclesFirst
+from fes_mj.cli.options import Cadence, DesignName, Dims, MomentsOptions, PrintOptions, bounds, speed_at
+from fes_mj.cli.tables import with_error
 from fes_mj.common.console import print_table, say
-from fes_mj.common.errors import require_extra
-from fes_mj.common.writing import PICTURES, require_writable, write_text
+from fes_mj.common.errors import InputError, require_extra
+from fes_mj.common.units import RPM
+from fes_mj.common.writing import PAGES, require_writable, write_text
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.design_file import load_design
-from fes_mj.riding.stimulation import CORE, ZERO, Window, stimulation as find_windows, summary, table_csv
+from fes_mj.linkage.turning import CRANK_ZERO
+from fes_mj.muscles.settings import MISTIMED, Settings
+from fes_mj.riding.stimulation import CORE, Window, stimulation as find_windows, summary, table_csv
+
+_SLOWEST, _STEP, _APART = 30, 10, 5  # rpm: of the cadences below the main one, by which a start passes
 
 
 def stimulation(
@@ -20,64 +28,148 @@ def stimulation(
     /,
     *,
     cadence: Annotated[list[Cadence] | None, Parameter(negative="", validator=bounds("cadence_rpm"))] = None,
-    legs: Legs = 2,
-    lag: Lag = 0.0,
     dims: Dims = "identified",
+    whose: MomentsOptions = MomentsOptions(),
+    drive: MusclesFirst = MusclesFirst(),
     csv: Path | None = None,
-    plot: Path | None = None,
+    out: Annotated[list[Path] | None, Parameter(name=["--out", "-o"], json_list=False, negative="")] = None,
+    lag: Annotated[str | None, Parameter(show=False)] = None,
     options: PrintOptions = PrintOptions(),
 ) -> None:
-    """When to stimulate: the crank angles at which each muscle group drives the crank, for a stimulator.
+    """When to stimulate: crank angles for a stimulator, what every muscle group gives and costs, for this seat.
 
     Args:
-        cadence: Crank speed in rpm, also several times; by default the one at which the tricycle does 5.71 km/h.
-        legs: Windows of the right leg alone, or in JSON and CSV of both.
-        lag: Of the muscles behind the stimulation, in s; the windows are advanced by what the crank turns in it. Cycles
-            in use: 0.06 to 0.15.
-        csv: Write the windows as a table (.csv).
-        plot: Draw those of the right leg as rings (.png or .svg).
+        cadence: Crank speed in rpm, also several times, the first in full; by default the one at which the tricycle
+            does 5.71 km/h, and slower ones that a start passes.
+        csv: Write the windows by cadence as a table (.csv).
+        out: Draw the page (.svg, .pdf or .png); may be given several times.
     """
-    loaded, inputs = load_design(design, dims), [Path(design)]
-    cadences = [speed_at(rpm, loaded) for rpm in cadence or (None,)]
-    for speed in cadences:
-        require_lag(lag, loaded, speed)
+    if lag is not None:
+        raise InputError(
+            "--lag is gone: with --drive muscles, the default, windows lead by what every muscle lags; leave it out"
+        )
+    loaded, pages = load_design(design, dims), out or []
+    inputs = [Path(design), *([drive.muscles] if drive.muscles else [])]
     require_writable(csv, "the windows", ".csv", inputs)
-    require_writable(plot, "the plot", PICTURES, inputs)
-    if plot:
+    for page in pages:
+        require_writable(page, "the page", PAGES, inputs)
         require_extra("report", "matplotlib")
-    windows = [window for window in find_windows(loaded, cadences, lag) if window.leg == "right" or legs == 2]
-    if plot:
+    if drive.drive == "moments":
+        _by_moments(loaded, cadence, whose, drive, csv, pages, options)
+        return
+    if drive.timing != "best":
+        raise InputError(
+            f"--timing is {drive.timing}; windows that suit all riders who may be this one are those of `best`, "
+            f"others are compared by `fes_mj static {design} --drive muscles --timing {drive.timing}`"
+        )
+    speeds = [speed_at(rpm, loaded) for rpm in cadence or (None,)]
+    slower = np.arange(_SLOWEST, speeds[0] / RPM - _APART, _STEP) * RPM if cadence is None else ()
+    settings = Settings.solve(loaded, drive.load_riders(whose), [*speeds, *map(float, slower)], speeds[0], drive.duty)
+    if pages:
+        from fes_mj.viewing.charts import write_figure
+        from fes_mj.viewing.settings_page import settings_figure
+
+        for page in pages:
+            write_figure(page, settings_figure, settings)
+    if csv:
+        write_text(csv, settings.table_csv())
+    options.show(settings.summary, lambda: _print(settings), windows=csv)
+    for page in pages:
+        options.name_files(page=page)
+
+
+def _print(settings: Settings) -> None:
+    main, content = settings.main, settings.summary()
+    rows = []
+    for record in main.records():
+        if record["leg"] == "right":
+            power, per = with_error(record["power_W"], record["power_sd_W"]), record["power_per_effort_W"]
+            lost = (f"{record[f'{when}_loss_W']:.1f}" for when in ("early", "late"))
+            cells = (_span(record, "deg"), _span(record, "from_tdc_deg"), power, f"{record['stimulation_effort']:.2f}")
+            rows.append((record["muscle"], *cells, "-" if per is None else f"{per:.1f}", *lost))
+    columns = (
+        "muscles", "stimulate, deg", "from top dead centre", "gives, W", "effort", "W per effort",
+        f"{MISTIMED:g} deg early costs, W", "late",
+    )  # fmt: skip
+    title = f"{main.design.name} at {content['cadence_rpm']:.1f} rpm, right leg; {main.riders.name} muscles"
+    print_table(title, columns, rows)
+    print_table("What it gives", ("", "both legs"), _totals(content))
+    if len(settings.by_cadence) > 1:
+        print_table("By cadence, right leg", ("rpm", *(row[0] for row in rows), "both legs, W"), _by_cadence(settings))
+    say(f"0: {CRANK_ZERO}; the left leg's windows are 180 deg later. Delay and rise of the muscles are counted in.")
+    say("Effort: share of the turn x strength x largest force, per that of the measurement.")
+
+
+def _totals(content: dict[str, float]) -> list[tuple[str, str]]:
+    return [
+        ("power, W", with_error(content["power_two_legs_W"], 2 * content["power_sd_W"])),
+        ("least power over the turn, W", f"{content['power_two_legs_min_W']:.1f}"),
+        ("below zero, % of the turn", f"{100 * content['negative_share']:.0f}"),
+        ("power of a leg per stimulation, W", f"{content['power_per_effort_W']:.2f}"),
+        (f"{MISTIMED:g} deg early costs, %", f"{100 * content['early_loss_share']:.0f}"),
+        (f"{MISTIMED:g} deg late costs, %", f"{100 * content['late_loss_share']:.0f}"),
+        ("widest window allowed, deg", f"{360 * content['duty_limit']:.0f}"),
+    ]
+
+
+def _by_cadence(settings: Settings) -> list[tuple[str, ...]]:
+    rows = []
+    for setting in settings.by_cadence:
+        spans = [_span(record, "deg") for record in setting.records() if record["leg"] == "right"]
+        power = setting.power.sum(axis=0)
+        both = with_error(2 * float(power.mean()), 2 * float(power.std()))
+        rows.append((f"{setting.cadence / RPM:.1f}", *spans, both))
+    return rows
+
+
+def _span(record: dict[str, float | None], unit: str) -> str:
+    on, off = record[f"on_{unit}"], record[f"off_{unit}"]
+    return "-" if on is None or off is None else f"{on:.0f} to {off:.0f}"
+
+
+def _by_moments(
+    design: Design,
+    cadence: list[float] | None,
+    whose: MomentsOptions,
+    drive: MusclesFirst,
+    csv: Path | None,
+    pages: Sequence[Path],
+    options: PrintOptions,
+) -> None:
+    """Windows of the linkage alone."""
+    given = {"--cadence": cadence, "--moments": whose.moments, "--group": whose.group, "--muscles": drive.muscles}
+    if said := [flag for flag, value in given.items() if value]:
+        raise InputError(
+            f"{said[0]}: where moments drive the crank depends on the linkage alone; leave it out, or use --drive "
+            "muscles"
+        )
+    windows = find_windows(design)
+    if pages:
         from fes_mj.viewing.charts import write_figure
         from fes_mj.viewing.rings import windows_figure
 
-        write_figure(plot, windows_figure, loaded, windows)
+        for page in pages:
+            write_figure(page, windows_figure, design, windows)
     if csv:
-        write_text(csv, table_csv(loaded, windows))
-    options.show(lambda: summary(loaded, windows), lambda: _print(loaded, windows), windows=csv, plot=plot)
+        write_text(csv, table_csv(design, windows))
+    options.show(lambda: summary(design, windows), lambda: _print_moments(design, windows), windows=csv)
+    for page in pages:
+        options.name_files(page=page)
 
 
-def _print(design: Design, windows: list[Window]) -> None:
-    rows = [
-        (
-            f"{record['muscle']} ({record['moment']})",
-            f"{record['cadence_rpm']:.1f} ({record['cadence_Hz']:.2f} Hz)",
-            f"{_span(record['works_deg'])} ({record['width_deg']:.0f})",
-            _span(record["stimulate_deg"]),
-            _span(record["stimulate_from_tdc_deg"]),
-            f"{_span(record['stimulate_core_deg'])} ({record['core_width_deg']:.0f})",
+def _print_moments(design: Design, windows: list[Window]) -> None:
+    rows = []
+    for record in (window.record(design) for window in windows if window.leg == "right"):
+        spans = (
+            f"{on:.0f} to {off:.0f}" for on, off in (record[f"{w}_deg"] for w in ("works", "works_from_tdc", "core"))
         )
-        for record in (window.record(design) for window in windows if window.leg == "right")
-    ]
-    lead = ", ".join(f"{degrees:.1f}" for degrees in dict.fromkeys(math.degrees(window.lead) for window in windows))
-    title = f"{design.name}, right leg; crank angles in deg, lag {windows[0].lag:g} s = {lead} deg of crank"
-    columns = ("muscle", "cadence, rpm", "works (width)", "stimulate", "from top dead centre", "core of it (width)")
-    print_table(title, columns, rows)
-    say(f"Zero: {ZERO}. The left leg's are 180 deg later.")
+        works, from_top, core = spans
+        name = f"{record['muscle']} ({record['moment']})"
+        rows.append(
+            (name, f"{works} ({record['width_deg']:.0f})", from_top, f"{core} ({record['core_width_deg']:.0f})")
+        )
+    columns = ("muscle", "drives the crank (width)", "from top dead centre", "core of it (width)")
+    print_table(f"{design.name}, right leg; crank angles in deg", columns, rows)
+    say(f"0: {CRANK_ZERO}; the left leg's are 180 deg later.")
     say(f"Core: the joint moves at least {CORE:g} times as fast per crank angle as at best in the window.")
-    if windows[0].lag == 0:
-        say("Stimulated muscle answers 0.06 to 0.15 s late on cycles in use: --lag advances the windows.")
-
-
-def _span(angles: list[float]) -> str:
-    begin, end = (round(angle) % 360 for angle in angles)
-    return f"{begin} to {end}"
+    say("A stimulated muscle answers late and weakens with speed: --drive muscles says when to stimulate.")

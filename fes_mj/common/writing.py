@@ -18,6 +18,7 @@ if sys.platform != "win32":
 TEMPORARY = ".fes_mj-"  # how the names of temporary files begin
 RECORD = ".fes_mj.sha256"  # in a folder: SHA-256, a line each, of what fes_mj wrote there without having been named
 PICTURES = (".png", ".svg")
+PAGES = (".svg", ".pdf", ".png")
 
 
 def csv_text(columns: Mapping[str, Any]) -> str:

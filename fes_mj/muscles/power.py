@@ -41,6 +41,11 @@ class MuscleTurn:
         return np.asarray(self.power.mean(axis=-1))
 
     @property
+    def group_power(self) -> FloatArray:
+        """Mean power of each group, W, one leg, shape (groups, members, designs)."""
+        return np.asarray(np.mean(self.activation * self.pulled.power, axis=-1))
+
+    @property
     def two_legs(self) -> FloatArray:
         """Crank power of both legs, half a turn apart, W, shape (members, designs, angles)."""
         return all_legs(self.power)

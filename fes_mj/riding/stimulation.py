@@ -1,4 +1,4 @@
-"""When to stimulate: the crank angles at which a muscle group's joint moment drives the crank, led by the muscle's lag.
+"""Where a muscle group's joint moment drives the crank: what the linkage alone says of stimulation, at any cadence.
 
 A joint moment M does the work M dphi over a joint angle, so it drives the crank where the joint turns with it: the
 kinematic effectiveness of Bellman et al. 2016 (doi:10.1109/TNSRE.2015.2500180). The hamstrings count as knee flexors.
@@ -16,7 +16,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from fes_mj.common.arrays import FloatArray
-from fes_mj.common.units import RPM, turns_per_second
 from fes_mj.linkage import kinematics
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.joints import PerJoint
@@ -52,17 +51,10 @@ class Window:
 
     muscle: str
     leg: str
-    cadence: float  # rad/s
-    lag: float  # s
     works: tuple[float, float]
     core: tuple[float, float]
     swing: float
     both_joints: float | None
-
-    @property
-    def lead(self) -> float:
-        """How far the crank turns in the lag, rad."""
-        return self.lag * self.cadence
 
     @property
     def width(self) -> float:
@@ -72,44 +64,36 @@ class Window:
     def core_width(self) -> float:
         return self.core[1] - self.core[0]
 
-    def at(self, leg: Leg, cadence: float, lag: float) -> Window:
-        """That of another leg, at a crank speed (rad/s) and with a lag (s)."""
+    def of(self, leg: Leg) -> Window:
+        """That of another leg."""
         turned = leg.lag - 2 * math.pi * ((self.works[0] + leg.lag) // (2 * math.pi))
         works, core = ((start + turned, end + turned) for start, end in (self.works, self.core))
-        return replace(self, leg=leg.prefix.removesuffix("_"), cadence=cadence, lag=lag, works=works, core=core)
+        return replace(self, leg=leg.prefix.removesuffix("_"), works=works, core=core)
 
     def record(self, design: Design) -> dict[str, Any]:
         """Names and units of files: angles in deg within [0, 360), of ZERO and of the right leg's top dead centre."""
-        whole, core = (np.array(angles) - self.lead for angles in (self.works, self.core))
         return {
             "muscle": self.muscle,
             "moment": MUSCLES[self.muscle].moment,
             "leg": self.leg,
-            "cadence_rpm": self.cadence / RPM,
-            "cadence_Hz": turns_per_second(self.cadence),
-            "lag_s": self.lag,
-            "lead_deg": math.degrees(self.lead),
             "works_deg": _degrees(self.works),
+            "works_from_tdc_deg": turning(design).degrees_from_top(np.array(self.works)).tolist(),
             "width_deg": math.degrees(self.width),
             "core_deg": _degrees(self.core),
+            "core_from_tdc_deg": turning(design).degrees_from_top(np.array(self.core)).tolist(),
             "core_width_deg": math.degrees(self.core_width),
-            "stimulate_deg": _degrees(whole),
-            "stimulate_from_tdc_deg": turning(design).degrees_from_top(whole).tolist(),
-            "stimulate_core_deg": _degrees(core),
-            "stimulate_core_from_tdc_deg": turning(design).degrees_from_top(core).tolist(),
             "joint_swing_deg": math.degrees(self.swing),
             "both_joints_deg": None if self.both_joints is None else math.degrees(self.both_joints),
         }
 
 
-def stimulation(design: Design, cadences: Sequence[float], lag: float = 0.0) -> list[Window]:
-    """Windows of every muscle group, both legs, at crank speeds in rad/s; by muscle, cadence, leg, and crank angle.
+def stimulation(design: Design) -> list[Window]:
+    """Windows of every muscle group, both legs; by muscle, leg, and crank angle.
 
-    Windows that hold less than LEAST_SHARE of the muscle's swing are left out. lag: s, from a change of the stimulation
-    to the muscle's answer. Raises AssemblyError for a linkage that does not close.
+    Windows that hold less than LEAST_SHARE of the muscle's swing are left out. Raises AssemblyError for a linkage that
+    does not close.
 
-    >>> design = fes_mj.load_design("d1")
-    >>> window = fes_mj.stimulation(design, [design.linkage.cadence], lag=0.1)[0]
+    >>> window = fes_mj.stimulation(fes_mj.load_design("d1"))[0]
     >>> window.muscle, window.leg, [round(math.degrees(angle)) for angle in window.works]
     ('quadriceps', 'right', [315, 444])
     """
@@ -121,14 +105,14 @@ def stimulation(design: Design, cadences: Sequence[float], lag: float = 0.0) -> 
         own = [_window(name, muscle, angle, rate, *ends) for ends in _positive(muscle.sense * rate[muscle.joint])]
         least = LEAST_SHARE * sum(window.swing for window in own)
         worth = [window for window in own if window.swing >= least]
-        windows += [window.at(leg, cadence, lag) for cadence in cadences for leg in TWO_LEGS for window in worth]
+        windows += [window.of(leg) for leg in TWO_LEGS for window in worth]
     return windows
 
 
 def _window(
     name: str, muscle: Muscle, angle: FloatArray, rate: PerJoint[FloatArray], start: float, end: float
 ) -> Window:
-    """The window of the right leg between two zeros of the joint's rate, found at a stand."""
+    """The window of the right leg between two zeros of the joint's rate."""
     cell, effect = 2 * math.pi / POINTS, muscle.sense * rate[muscle.joint]
     inside = (angle - start) % (2 * np.pi) < end - start
     core = start + (angle[inside & (effect >= CORE * effect[inside].max())] - start) % (2 * np.pi)
@@ -136,8 +120,6 @@ def _window(
     return Window(
         muscle=name,
         leg="right",
-        cadence=0.0,
-        lag=0.0,
         works=(start, end),
         core=(float(core.min()), float(core.max())),
         swing=cell * float(effect[inside].sum()),

@@ -35,9 +35,10 @@ def any_letters() -> Iterator[None]:
 
 
 def write_figure(path: Path, draw: Callable[..., Figure], *content: Any) -> None:
-    """Write what `draw` makes of the content, in the one look, as the suffix of `path` says."""
+    """Write what `draw` makes of the content, in the one look, as the suffix of `path` says; without a date."""
+    dated = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}.get(path.suffix.lower())
     with mpl.rc_context(STYLE), any_letters(), replacing(path) as temporary:
-        draw(*content).savefig(temporary, dpi=150)
+        draw(*content).savefig(temporary, dpi=150, metadata=dated)
 
 
 def svg_text(figure: Figure) -> str:

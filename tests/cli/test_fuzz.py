@@ -181,7 +181,7 @@ def _fuzz_flags(seed: int, count: int, folder: Path, capsys: pytest.CaptureFixtu
         "export": ("-o", "--out", "--variant", "--cadence", "--dims"),
         "validate": ("--report", "--junit", "--video", "--group", "--cadence", "--moments"),
         "fit": ("--thigh", "--stature", "--sex", "--percentile", "--up", "--samples", "--out", "--population"),
-        "stimulation": ("--cadence", "--lag", "--csv", "--plot", "--dims", "--json"),
+        "stimulation": ("--cadence", "--lag", "--csv", "--duty", "--dims", "--json"),
         "sing": ("--x",),
     }
     # whatever else is right, this is not, and no parser knows it

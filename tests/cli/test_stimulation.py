@@ -1,4 +1,4 @@
-"""`fes_mj stimulation`: table, JSON, CSV and plot, and what it refuses."""
+"""`fes_mj stimulation`: table, JSON, CSV and page, and what it refuses."""
 
 import subprocess
 import sys
@@ -6,44 +6,56 @@ from pathlib import Path
 
 import pytest
 
-from fes_mj.cli.app import run
+from fes_mj.muscles.riders import load_riders
 from tests.cli.conftest import answer, result
 
+MOMENTS = ("--drive", "moments")
 
-def test_table_json_and_files(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
-    table, picture = tmp_path / "d1.csv", tmp_path / "d1.svg"
-    arguments = ["stimulation", "d1", "--cadence", "60", "--lag", "0.1"]
-    code, out, _ = result(capsys, *arguments, "--csv", str(table), "--plot", str(picture))
+
+@pytest.fixture(scope="module")
+def few(tmp_path_factory: pytest.TempPathFactory) -> tuple[str, str]:
+    """A few riders: all that a command line asks of them."""
+    path = tmp_path_factory.mktemp("riders") / "few.npz"
+    load_riders("p1p2").taken(slice(0, 5)).save(path)
+    return "--muscles", str(path)
+
+
+def test_table_json_and_files(capsys: pytest.CaptureFixture[str], tmp_path: Path, few: tuple[str, str]) -> None:
+    table, pages = tmp_path / "d1.csv", [tmp_path / f"d1.{suffix}" for suffix in ("svg", "pdf")]
+    arguments = ["stimulation", "d1", *few, "--cadence", "60", "--cadence", "30", "--duty", "0.2"]
+    drawn = [part for page in pages for part in ("-o", str(page))]
+    code, out, _ = result(capsys, *arguments, "--csv", str(table), *drawn)
     assert code == 0
-    for said in (
-        "quadriceps (knee extension)",
-        "60.0 (1.00 Hz)",
-        "lag 0.1 s = 36.0 deg",
-        "points backwards",
-        "180 deg",
-    ):
+    for said in ("d1 at 60.0 rpm, right leg; few muscles", "W per effort", "points backwards", "180 deg", "By cadence"):
         assert said in out
-    assert table.read_text().startswith("muscle,moment,leg,cadence_rpm,cadence_Hz,lag_s,lead_deg,")
-    assert picture.read_text().startswith("<?xml")
+    assert table.read_text().startswith("cadence_rpm,muscle,leg,on_deg,off_deg,")
+    assert [page.read_bytes()[:4] for page in pages] == [b"<?xm", b"%PDF"]
+    assert "few, 5 riders who may be this one" in pages[0].read_text()
     code, content = answer(capsys, *arguments)
     assert code == 0
-    first = content["windows"][0]
-    assert (first["muscle"], first["leg"], first["lead_deg"]) == ("quadriceps", "right", pytest.approx(36))
-    on, off = (f"{angle:.0f}" for angle in first["stimulate_deg"])
-    assert f"{on} to {off}" in out
+    assert (content["duty_limit"], round(content["cadence_rpm"])) == (0.2, 60)
+    assert [round(setting["cadence_rpm"]) for setting in content["settings"]] == [30, 60]
+    first = next(row for row in content["windows"] if round(row["cadence_rpm"]) == 60)
+    assert (first["muscle"], first["leg"]) == ("quadriceps", "right")
+    assert f"{first['on_deg']:.0f} to {first['off_deg']:.0f}" in out
 
 
-def test_several_cadences_and_none(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
-    _, content = answer(capsys, "stimulation", "r1", "--cadence", "30", "--cadence", "60")
-    assert {round(window["cadence_rpm"]) for window in content["windows"]} == {30, 60}
-    _, content = answer(capsys, "stimulation", "r1")
-    assert {round(window["cadence_rpm"], 1) for window in content["windows"]} == {93.2}
-    _, out, _ = result(capsys, "stimulation", "r1")
-    assert "--lag advances" in out
-    assert (
-        run(["stimulation", "r1", "-q", "--plot", str(tmp_path / "a.png"), "--cadence", "30", "--cadence", "60"]) == 0
-    )
-    assert capsys.readouterr().out == ""
+def test_without_a_cadence_those_that_a_start_passes(capsys: pytest.CaptureFixture[str], few: tuple[str, str]) -> None:
+    _, content = answer(capsys, "stimulation", "trt", *few)
+    assert [round(setting["cadence_rpm"]) for setting in content["settings"]] == [30, 40, 50, 60]
+    assert content["cadence_rpm"] == pytest.approx(60.13, abs=0.01)
+    assert content["seat"]["seat_angle_deg"] == pytest.approx(60)
+
+
+def test_moments_say_where_the_linkage_lets_them_drive(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    table, picture = tmp_path / "d1.csv", tmp_path / "d1.svg"
+    code, out, _ = result(capsys, "stimulation", "d1", *MOMENTS, "--csv", str(table), "-o", str(picture))
+    assert code == 0
+    assert "quadriceps (knee extension)" in out
+    assert table.read_text().startswith("muscle,moment,leg,works_on_deg,works_off_deg,")
+    assert picture.read_text().startswith("<?xml")
+    first = answer(capsys, "stimulation", "d1", *MOMENTS)[1]["windows"][0]
+    assert first["works_deg"] == pytest.approx([315, 84], abs=0.6)
 
 
 @pytest.mark.parametrize(
@@ -52,15 +64,17 @@ def test_several_cadences_and_none(capsys: pytest.CaptureFixture[str], tmp_path:
         (["d9"], "d9"),
         (["d1", "--cadence", "0"], "for --cadence. Must be >= 1."),
         (["d1", "--cadence", "60", "--cadence", "nan"], "for --cadence. Must be"),
-        (["d1", "--lag", "-0.1"], '"-0.1" for --lag. Must be >= 0.'),
-        (
-            ["d1", "--lag", "0.7"],
-            "--lag is 0.7; it must be shorter than a turn of the crank, which takes 0.623 s in d1",
-        ),
-        (["d1", "--lag", "0.7", "--cadence", "60", "--cadence", "100"], "takes 0.6 s in d1 at 100 rpm"),
+        (["d1", "--lag", "0.1"], "--drive muscles"),
+        (["d1", *MOMENTS, "--lag", "0.1"], "--drive muscles"),
+        (["d1", "--duty", "0"], "duty is 0"),
+        (["d1", "--duty", "1.1"], "duty is 1.1"),
+        (["d1", "--timing", "by-angle"], "static d1 --drive muscles --timing by-angle"),
+        (["d1", "--moments", "mine.toml"], "fes_mj moments mine.toml --fit-muscles -o RIDER.npz"),
+        (["d1", "--muscles", "nowhere.npz"], "nowhere.npz"),
+        (["d1", *MOMENTS, "--cadence", "60"], "--cadence: where moments drive the crank"),
         (["d1", "--csv", "{folder}/x.txt"], "must end in .csv"),
         (["d1", "--csv", "{folder}/none/x.csv"], "does not exist"),
-        (["d1", "--plot", "{folder}/x.pdf"], "must end in .png or .svg"),
+        (["d1", "-o", "{folder}/x.txt"], "must end in .svg or .pdf or .png"),
         (["r2", "--dims", "printed"], "cannot close at crank angle"),
     ],
 )
@@ -82,6 +96,6 @@ def test_no_output_replaces_the_design(tmp_path: Path, capsys: pytest.CaptureFix
     assert "a.csv" in err
 
 
-def test_it_needs_no_mujoco() -> None:
+def test_it_needs_no_mujoco(few: tuple[str, str]) -> None:
     script = "import sys; from fes_mj.cli.app import run; run(sys.argv[1:]); sys.exit('mujoco' in sys.modules)"
-    assert subprocess.run([sys.executable, "-c", script, "stimulation", "d1", "-q"]).returncode == 0
+    assert subprocess.run([sys.executable, "-c", script, "stimulation", "d1", "-q", *few]).returncode == 0

@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 
 import fes_mj
-from fes_mj.common.units import RPM
 from fes_mj.linkage.assembly import joint_ranges
 from fes_mj.linkage.kinematics import solve
 from fes_mj.linkage.turning import turning
@@ -24,7 +23,7 @@ def of(windows: list[Window], muscle: str, leg: str = "right") -> list[Window]:
 def test_the_knee_of_a_four_bar_extends_from_its_nearest_to_its_farthest_pedal() -> None:
     """Exact: the crank is then in line with the hip, so half a turn apart."""
     trt = fes_mj.load_design("trt")
-    (quadriceps,), (hamstrings,) = (of(stimulation(trt, [6.0]), muscle) for muscle in ("quadriceps", "hamstrings"))
+    (quadriceps,), (hamstrings,) = (of(stimulation(trt), muscle) for muscle in ("quadriceps", "hamstrings"))
     inwards = float(np.angle(-trt.linkage.crank_centre)) % (2 * math.pi)
     assert quadriceps.works == pytest.approx((inwards, inwards + math.pi), abs=1e-6)
     assert quadriceps.works[0] == pytest.approx(turning(trt).top_dead_centre, abs=1e-6)
@@ -37,7 +36,7 @@ def test_a_moment_drives_the_crank_inside_and_brakes_it_outside(design: fes_mj.D
     """Work of a unit moment between angles 0.36 deg apart: positive inside, and outside no more than is left out."""
     ends = np.linspace(0, 2 * np.pi, 1001) - lag
     middles, joints = (ends[1:] + ends[:-1]) / 2 + lag, solve(design, ends).joint_angle
-    windows = stimulation(design, [5.0])
+    windows = stimulation(design)
     for name, muscle in MUSCLES.items():
         work = muscle.sense * np.diff(joints[muscle.joint])
         inside, near = np.zeros((2, len(middles)), bool)
@@ -52,7 +51,7 @@ def test_a_moment_drives_the_crank_inside_and_brakes_it_outside(design: fes_mj.D
 
 
 def test_swing_and_core(design: fes_mj.Design) -> None:
-    windows, ranges = stimulation(design, [5.0]), np.radians(joint_ranges(design))
+    windows, ranges = stimulation(design), np.radians(joint_ranges(design))
     # what extends comes back, but for what is left out
     extended, flexed = (sum(window.swing for window in of(windows, muscle)) for muscle in ("quadriceps", "hamstrings"))
     assert extended == pytest.approx(flexed, rel=LEAST_SHARE)
@@ -68,24 +67,8 @@ def test_swing_and_core(design: fes_mj.Design) -> None:
         assert ends == pytest.approx(CORE * all_along.max(), rel=0.02)
 
 
-def test_the_lag_turns_every_window_back_by_what_the_crank_turns_in_it() -> None:
-    d1 = fes_mj.load_design("d1")
-    cadences = [40 * RPM, 90 * RPM]
-    plain, led = stimulation(d1, cadences), stimulation(d1, cadences, lag=0.1)
-    assert [window.works for window in plain] == [window.works for window in led]
-    for window in led:
-        record = window.record(d1)
-        turned = (np.array(record["works_deg"]) - record["stimulate_deg"]) % 360
-        assert turned == pytest.approx(0.1 * record["cadence_rpm"] * 6)  # a rpm is 6 deg/s
-        assert record["lead_deg"] == pytest.approx(360 * 0.1 * record["cadence_Hz"])
-        top = math.degrees(turning(d1).top_dead_centre)
-        for name in ("stimulate", "stimulate_core"):
-            zeros = (np.array(record[f"{name}_deg"]) - record[f"{name}_from_tdc_deg"] - top) % 360
-            assert np.minimum(zeros, 360 - zeros) == pytest.approx(0, abs=1e-9)
-
-
 def test_the_left_leg_follows_half_a_turn_later(design: fes_mj.Design) -> None:
-    windows = stimulation(design, [5.0])
+    windows = stimulation(design)
     for muscle in MUSCLES:
         right, left = (of(windows, muscle, leg) for leg in ("right", "left"))
         starts = [sorted(window.works[0] % (2 * np.pi) for window in legs) for legs in (right, left)]
@@ -96,7 +79,7 @@ def test_the_left_leg_follows_half_a_turn_later(design: fes_mj.Design) -> None:
 def test_hamstrings_help_at_the_hip_where_it_extends() -> None:
     """In the TRT the two joints' windows are all there is to overlap."""
     trt = fes_mj.load_design("trt")
-    windows = stimulation(trt, [6.0])
+    windows = stimulation(trt)
     (hamstrings,), (gluteus,) = of(windows, "hamstrings"), of(windows, "gluteus")
     overlap = gluteus.works[1] - hamstrings.works[0]
     assert hamstrings.both_joints == pytest.approx(overlap, abs=2e-3)
@@ -105,12 +88,11 @@ def test_hamstrings_help_at_the_hip_where_it_extends() -> None:
 
 def test_table_and_json_say_the_same() -> None:
     d1 = fes_mj.load_design("d1")
-    windows = stimulation(d1, [60 * RPM], 0.1)
+    windows = stimulation(d1)
     records, rows = summary(d1, windows)["windows"], [*csv.DictReader(io.StringIO(table_csv(d1, windows)))]
     assert len(rows) == len(records) == 8  # the hip of D1 extends twice a turn
     for record, row in zip(records, rows, strict=True):
-        for name in ("works", "core", "stimulate", "stimulate_from_tdc"):
+        for name in ("works", "works_from_tdc", "core"):
             pair = float(row[f"{name}_on_deg"]), float(row[f"{name}_off_deg"])
             assert pair == pytest.approx(record[f"{name}_deg"], abs=0.0051)
-        assert float(row["cadence_Hz"]) == pytest.approx(1.0)
         assert (row["muscle"], row["leg"]) == (record["muscle"], record["leg"])

@@ -1,0 +1,190 @@
+"""Settings of a stimulator for one design and seat: best windows by cadence, what a group gives and costs, tolerance.
+
+Nobody's stimulation follows a cadence by itself: windows are those before delay and activation, to be set as they are.
+"""
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from fes_mj.common.arrays import FloatArray
+from fes_mj.common.units import RPM, turns_per_second
+from fes_mj.linkage.design import Design
+from fes_mj.linkage.legs import TWO_LEGS
+from fes_mj.linkage.turning import CRANK_ZERO, turning
+from fes_mj.muscles.anatomy import GROUPS, anatomy
+from fes_mj.muscles.power import MuscleTurn
+from fes_mj.muscles.prior import ramp
+from fes_mj.muscles.riders import Riders
+from fes_mj.muscles.rules import BEST, Stimulated, stimulated
+from fes_mj.muscles.timing import DUTY, Windows, activation
+
+MISTIMED = 20.0  # deg, by which windows are shifted to see what that costs
+
+
+@dataclass(frozen=True, eq=False)
+class Setting:
+    """The best windows of a design at one cadence (rad/s); duty: the limit that the user keeps."""
+
+    design: Design
+    cadence: float
+    duty: float
+    stimulated: Stimulated
+
+    @classmethod
+    def best(cls, design: Design, riders: Riders, cadence: float, duty: float = DUTY) -> "Setting":
+        """Raises as rules.stimulated."""
+        return cls(design, cadence, duty, stimulated(BEST, riders, design, cadence, duty))
+
+    @property
+    def turn(self) -> MuscleTurn:
+        assert self.stimulated.turn is not None  # the best rule has one
+        return self.stimulated.turn
+
+    @property
+    def windows(self) -> Windows:
+        """Shape (groups, 1, 1): the same for all riders."""
+        assert self.stimulated.windows is not None
+        return self.stimulated.windows
+
+    @property
+    def riders(self) -> Riders:
+        return self.stimulated.riders
+
+    @cached_property
+    def power(self) -> FloatArray:
+        """Mean power of each group, one leg, W, shape (groups, members)."""
+        return self.turn.group_power[..., 0]
+
+    @cached_property
+    def both_legs(self) -> FloatArray:
+        """Expected power of both legs over the turn, W, shape (angles,)."""
+        return np.asarray(self.turn.two_legs[:, 0].mean(axis=0))
+
+    @cached_property
+    def effort(self) -> FloatArray:
+        """Share of the turn x strength x largest force of each group, per that of the measurement, shape (groups,)."""
+        muscles = anatomy()
+        force = self.riders.strength(muscles)[..., 0, 0] * muscles.force[:, None]
+        strength = np.stack([force[part].sum(axis=0).mean() for part in muscles.of_group])
+        measured = self.riders.windows()[..., 1].mean(axis=1)
+        return np.asarray(self.windows.width[:, 0, 0] * strength / float(measured @ strength))
+
+    def lost(self, degrees: float) -> FloatArray:
+        """Expected power of each group that windows later by so much lose, one leg, W, shape (groups,)."""
+        later = activation(self.windows.shifted(degrees), self.riders, self.cadence)
+        later = later * (self.windows.width > 0)[..., None]
+        return np.asarray((self.power - MuscleTurn(self.turn.pulled, later).group_power[..., 0]).mean(axis=1))
+
+    @cached_property
+    def early_late(self) -> tuple[FloatArray, FloatArray]:
+        """`lost` by windows that are MISTIMED early, and late."""
+        return self.lost(-MISTIMED), self.lost(MISTIMED)
+
+    def summary(self) -> dict[str, Any]:
+        """What it gives and costs, as JSON names and units it."""
+        together, both = self.power.sum(axis=0), self.both_legs
+        early, late = (float(lost.sum() / together.mean()) for lost in self.early_late)
+        return {
+            "cadence_rpm": self.cadence / RPM,
+            "cadence_Hz": turns_per_second(self.cadence),
+            "power_mean_W": float(together.mean()),
+            "power_sd_W": float(together.std()),
+            "power_two_legs_W": float(both.mean()),
+            "power_two_legs_min_W": float(both.min()),
+            "negative_share": float(np.mean(both < 0)),
+            "stimulation_effort": float(self.effort.sum()),
+            "power_per_effort_W": float(together.mean() / self.effort.sum()),
+            "early_loss_share": early,
+            "late_loss_share": late,
+        }
+
+    def records(self) -> Iterator[dict[str, Any]]:
+        """A row for each group and leg, as files name and unit it; angles None where a group is not stimulated."""
+        top = turning(self.design).top_dead_centre
+        for number, group in enumerate(GROUPS):
+            width = float(self.windows.width[number, 0, 0])
+            power, effort = self.power[number], float(self.effort[number])
+            for leg in TWO_LEGS:
+                on = float(self.windows.on[number, 0, 0]) + math.degrees(leg.lag)
+                ends = [on % 360, (on + width) % 360] if width else [None, None]
+                from_top = [None if end is None else (end - math.degrees(top)) % 360 for end in ends]
+                yield {
+                    "cadence_rpm": self.cadence / RPM,
+                    "muscle": group,
+                    "leg": leg.prefix.removesuffix("_"),
+                    "on_deg": ends[0],
+                    "off_deg": ends[1],
+                    "on_from_tdc_deg": from_top[0],
+                    "off_from_tdc_deg": from_top[1],
+                    "duty": width / 360,
+                    "power_W": float(power.mean()),
+                    "power_sd_W": float(power.std()),
+                    "stimulation_effort": effort,
+                    "power_per_effort_W": float(power.mean()) / effort if effort else None,
+                    "early_loss_W": float(self.early_late[0][number]),
+                    "late_loss_W": float(self.early_late[1][number]),
+                }
+
+
+@dataclass(frozen=True, eq=False)
+class Settings:
+    """Of one design and seat, by cadence; main: number of the cadence that is shown in full."""
+
+    by_cadence: tuple[Setting, ...]
+    main: Setting
+
+    @classmethod
+    def solve(
+        cls, design: Design, riders: Riders, cadences: Sequence[float], main: float, duty: float = DUTY
+    ) -> "Settings":
+        """cadences: rad/s, of which `main` is one. Raises as rules.stimulated."""
+        by_cadence = {cadence: Setting.best(design, riders, cadence, duty) for cadence in sorted(cadences)}
+        return cls(tuple(by_cadence.values()), by_cadence[main])
+
+    @property
+    def seat(self) -> dict[str, Any]:
+        """For whom and where the settings hold: another seat or rider needs others."""
+        design, motion = self.main.design, self.main.stimulated.motion
+        bent = {joint: np.degrees(np.pi - motion.joint_angle[joint]) for joint in ("knee", "hip")}
+        return {
+            "seat_angle_deg": math.degrees(design.linkage.seat_angle),
+            "hip_to_crank_centre_m": abs(design.linkage.crank_centre),
+            "crank_m": design.linkage.crank,
+            "thigh_m": design.rider.thigh,
+            "shank_m": design.rider.shank,
+            **{f"{joint}_flexion_deg": [float(angle.min()), float(angle.max())] for joint, angle in bent.items()},
+        }
+
+    def summary(self) -> dict[str, Any]:
+        """As JSON names and units it; the numbers of the main cadence beside `settings` of all."""
+        main = self.main
+        return {
+            "design": main.design.name,
+            "drive": "muscles",
+            "timing": BEST,
+            "group": main.riders.name,
+            "seat": self.seat,
+            "crank_angle_zero": CRANK_ZERO,
+            "top_dead_centre_deg": math.degrees(turning(main.design).top_dead_centre),
+            "ramp_s": ramp(),
+            "duty_limit": main.duty,
+            "mistimed_deg": MISTIMED,
+            **main.summary(),
+            "settings": [setting.summary() for setting in self.by_cadence],
+            "windows": [record for setting in self.by_cadence for record in setting.records()],
+        }
+
+    def table_csv(self) -> str:
+        """The windows, a row for each cadence, group and leg."""
+        rows = [record for setting in self.by_cadence for record in setting.records()]
+        cells = [[_cell(value) for value in row.values()] for row in rows]
+        return "\n".join([",".join(rows[0]), *map(",".join, cells)]) + "\n"
+
+
+def _cell(value: Any) -> str:
+    return "" if value is None else value if isinstance(value, str) else f"{value:.6g}"
