@@ -9,7 +9,9 @@ import cmath
 import math
 import time
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from dataclasses import replace
+from functools import partial
 from itertools import count
 from typing import Any
 
@@ -32,7 +34,8 @@ from fes_mj.moments.torque_map import torque_map
 from fes_mj.optimization.evenness import RippleLimit
 from fes_mj.optimization.limits import load_limits
 from fes_mj.optimization.people import sampled
-from fes_mj.optimization.problem import Problem
+from fes_mj.optimization.problem import Problem, make_problem
+from fes_mj.optimization.search import BudgetSpentError, Search, differential
 from fes_mj.simulation.bench import BenchOptions, joint_drives, simulate
 from fes_mj.simulation.compiled import compiled_loop
 from fes_mj.simulation.mjcf import ModelOptions, build_mjcf
@@ -140,6 +143,30 @@ def evaluations() -> dict[str, np.ndarray]:
     )
 
 
+class Thorough(Search):
+    """A search that computes forces and clearances of every design that keeps the limits which are known at once."""
+
+    def __call__(self, x: np.ndarray, to_beat: object = None) -> np.ndarray:
+        return super().__call__(x)
+
+
+def searches() -> dict[str, np.ndarray]:
+    """Designs per second of a search under the limits of what can be built, which finds the same both times."""
+
+    def searched(kind: type[Search], problem: Problem) -> None:
+        search = kind(problem, DESIGNS)
+        with suppress(BudgetSpentError):
+            differential(search, None, np.random.default_rng(1))
+
+    return rates(
+        {
+            f"search, {linkage}{words}": (DESIGNS, partial(searched, kind, make_problem(linkage, MOMENTS)))
+            for linkage in ("trt", "crt", "cdt")
+            for words, kind in (("", Search), (", all computed", Thorough))
+        }
+    )
+
+
 def simulated() -> dict[str, np.ndarray]:
     """Simulated turns of D1 with riders of different mass per second; simulate never meets a rider twice."""
     masses = (60.0 + step / 1000 for step in count())
@@ -192,6 +219,7 @@ def simulated() -> dict[str, np.ndarray]:
 
 
 RATIOS = (
+    *((f"search, {linkage}", f"search, {linkage}, all computed") for linkage in ("trt", "crt", "cdt")),
     ("ours, with all constraints and a limit on the ripple", "ours, with all constraints"),
     ("ours, for people", "ours, with all constraints"),
     ("ours, with all constraints", "fsolve at 360 angles"),
@@ -207,7 +235,7 @@ RATIOS = (
 def main() -> None:
     """Run everything, print tables, write the results."""
     started = time.perf_counter()
-    measured = evaluations() | simulated()
+    measured = evaluations() | searches() | simulated()
     print_table(
         "Rates, median of one run", ("", "per second"), [(n, f"{np.median(v):,.3g}") for n, v in measured.items()]
     )

@@ -104,6 +104,8 @@ class SearchOptions(PrintOptions, MomentsOptions):
             )
         if self.riders != "one" and (self.caution or self.method == "nsga-ii"):
             raise InputError(f"--riders {self.riders} is an objective of its own: not with --caution or nsga-ii")
+        if self.limits == "buildable":
+            require_extra("build", "shapely")
         if self.method in _PACKAGES:
             require_extra("optimize", _PACKAGES[self.method])
         if self.smooth and self.method != "nsga-ii":

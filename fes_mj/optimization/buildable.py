@@ -1,7 +1,7 @@
 """What makes a found design one that can be built, beyond the paper's limits: values for populations.
 
 Forces and clearances take a thousand times as long as all else: they are computed of designs that keep every other
-limit, and are NaN of the others.
+limit and have more power than they have to beat, and are NaN of the others.
 """
 
 from dataclasses import dataclass, fields
@@ -14,16 +14,19 @@ from fes_mj.common.arrays import FloatArray
 from fes_mj.common.errors import MissingPartError
 from fes_mj.linkage.clearance import Side
 from fes_mj.linkage.design import Design
+from fes_mj.linkage.inertia import body_loads
 from fes_mj.linkage.joints import JOINTS
-from fes_mj.linkage.kinematics import FULL_TURN
+from fes_mj.linkage.kinematics import FULL_TURN, solve
 from fes_mj.linkage.layers import least_clearance
 from fes_mj.linkage.plates import Hole, Plate, hole_places
 from fes_mj.moments.joint_moments import JointMoments
+from fes_mj.moments.torque_map import torque_map
 from fes_mj.statics.characteristics import motion_characteristics
 from fes_mj.statics.cycles import Cycles
+from fes_mj.statics.equilibrium import equilibrium
 from fes_mj.statics.friction import BearingLoss, Bearings
 from fes_mj.statics.joint_forces import JointForces, peaks
-from fes_mj.statics.turn import QuasiStatic, quasi_static
+from fes_mj.statics.turn import QuasiStatic
 
 # Of a link that is not sized yet, m: half of its width, its pins, its thickness.
 MARGIN, PIN, THICKNESS = 0.015, 0.012, 0.008
@@ -76,9 +79,11 @@ def transmission_angle(design: Design, turn: Cycles) -> FloatArray:
 
 
 def pin_force(design: Design, moments: JointMoments, points: int = POINTS) -> float:
-    """Largest on any pin while riding with masses, N."""
-    forces = peaks(JointForces(quasi_static(design, moments, points=points)).with_masses)
-    return max(force for joint, force in forces.items() if joint not in JOINTS)
+    """Largest on any pin while riding with masses, N, of a design that turns."""
+    motion, cadence = solve(design, np.linspace(0, 2 * np.pi, points, endpoint=False)), design.linkage.cadence
+    moment = torque_map(moments).along(motion, cadence)
+    _, forces = equilibrium(motion, moment, body_loads(motion, cadence))
+    return max(force for joint, force in peaks(forces).items() if joint not in JOINTS)
 
 
 def clearance(design: Design, points: int = POINTS) -> float:

@@ -138,7 +138,7 @@ def optimize(
     progress: Callable[[int], None] = lambda _: None,
     **problem: Any,
 ) -> Optimum:
-    """The six-bar of a kind ("crt", "cdt") with the most mean crank power under joint moments.
+    """The linkage of a kind ("crt", "cdt", "trt") with the most mean crank power under joint moments that can be built.
 
     method: one of search.METHODS, of which the best of so many independent searches counts, or "nsga-ii", which makes
     one and weighs the powers of both rider groups and, if `smooth`, the least fluctuation of energy. budget:
@@ -149,8 +149,8 @@ def optimize(
     Raises InputError for what make_problem refuses, an infeasible start, and if no search finds anything feasible;
     MissingPartError without the package of the method.
 
-    >>> fes_mj.optimize("crt", fes_mj.load_moments("p1p2"), budget=300, searches=1)
-    <Optimum crt-p1p2: 22.54 W after 300 evaluations>
+    >>> fes_mj.optimize("crt", fes_mj.load_moments("p1p2"), budget=1000, searches=1)
+    <Optimum crt-p1p2: 24.71 W after 1000 evaluations>
     """
     task = make_problem(kind, moments, **problem)
     name = findings.name if findings else f"{kind}-{moments.name}"

@@ -5,6 +5,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -41,6 +42,7 @@ from fes_mj.statics.work_table import WorkTable, uncertain_table
 LENGTH_COUNT = len(VARIED) - 1  # all variables but the gear ratio, which comes last
 # A design below any feasible one, and each margin it was refused too early to have counts as ten scales.
 INFEASIBLE, _UNKNOWN = -1e4, 10.0
+BUILDABLE: Mapping[str, float] = MappingProxyType({})  # the limits of what can be built, none of them changed
 ROOM = 0.15  # m around the pivots of a design whose place is its own
 _HAIR = 1e-12  # keeps a number that is computed again on the same side of its limit
 
@@ -171,11 +173,12 @@ class Problem:
         known = {name: value for name, value in zip(VARIED, values, strict=True) if kind in _kinds(name)}
         return replaced(self.template, known)
 
-    def evaluate(self, x: FloatArray) -> Evaluation:
+    def evaluate(self, x: FloatArray, to_beat: FloatArray | float = -np.inf) -> Evaluation:
         """Power and constraints of a population, shape (n, variables).
 
         Without gear ratios each design gets the largest that its joint speeds allow: power is proportional to it.
-        Designs whose lengths already violate a constraint are not turned.
+        Designs whose lengths already violate a constraint are not turned. to_beat: merit of each, shape (n,); what
+        takes long is not computed of a design that would not reach it, which then counts as infeasible.
         """
         design, free = self.batch(x), x[:, : len(self.search) - 1]
         lengths = length_values(design, x[:, :LENGTH_COUNT], self.limits.polygon)
@@ -196,19 +199,23 @@ class Problem:
                 gear_ratio[sound] = np.fmin(for_all * (1 - _HAIR), self.gear_ratios[1])
             ratios = np.repeat(gear_ratio[sound], riders)
             power[sound] = self.people.power(turn.work * (turns_per_second(cadence) * ratios[:, None]))
-            by_rider = motion_values(turn, self.table.measured_on, speeds, ratios)
-            values = np.column_stack([by_rider, *self._ripple(ridden, by_rider, ratios)])
-            motion[sound] = self._worst(np.column_stack([values, *self._build(ridden, turn, values, ratios)]))
+            values = motion_values(turn, self.table.measured_on, speeds, ratios)
+            hopeful = np.repeat((self.worth(power) >= to_beat)[sound], riders)
+            values = np.column_stack([values, *self._ripple(ridden, values, hopeful, ratios)])
+            motion[sound] = self._worst(np.column_stack([values, *self._build(ridden, turn, values, hopeful, ratios)]))
         return Evaluation(np.column_stack([free, gear_ratio]), power, np.hstack([lengths, motion]), self.constraints)
 
-    def merit(self, evaluation: Evaluation) -> FloatArray:
-        """What is maximised, W, shape (n,); every infeasible design ranks below, by its violation.
+    def worth(self, power: FloatArray) -> FloatArray:
+        """What is maximised, W, shape (n,); power: shape (n, sets).
 
         Power of the first set of moments less `caution` standard deviations of the gain over the baseline.
         """
-        power = evaluation.power
         doubt = self.caution * np.linalg.norm((power - self.baseline)[:, 1:], axis=1) if self.caution else 0.0
-        return np.where(evaluation.feasible, power[:, 0] - doubt, INFEASIBLE - evaluation.violation)
+        return np.asarray(power[:, 0] - doubt)
+
+    def merit(self, evaluation: Evaluation) -> FloatArray:
+        """Worth of the feasible designs, W, shape (n,); every infeasible one ranks below, by its violation."""
+        return np.where(evaluation.feasible, self.worth(evaluation.power), INFEASIBLE - evaluation.violation)
 
     def violations(self, evaluation: Evaluation, row: int = 0) -> list[dict[str, Any]]:
         """The violated constraints of one design: name, value, limit, unit and margin."""
@@ -230,23 +237,27 @@ class Problem:
         )
         return ", ".join(parts) or "the thigh swings through 180 deg or more"
 
-    def _ripple(self, design: Design, values: FloatArray, gear_ratio: FloatArray) -> list[FloatArray]:
-        """Where it is limited, the ripple of a batch that keeps the other limits on the turn (`values`), else NaN."""
+    def _ripple(
+        self, design: Design, values: FloatArray, hopeful: BoolArray, gear_ratio: FloatArray
+    ) -> list[FloatArray]:
+        """Where it is limited, the ripple of the hopeful that keep the limits of which `values` are, else NaN."""
         if not self.ripple:
             return []
         ripple = np.full(len(values), np.nan)
-        within = np.all(margins(self.motion[: values.shape[1]], values) >= 0, axis=1)
+        within = hopeful & np.all(margins(self.motion[: values.shape[1]], values) >= 0, axis=1)
         if within.any():
             geared = design.with_linkage(gear_ratio=gear_ratio[:, None])
             ripple[within] = self.ripple.ripple(geared.taken(within))
         return [ripple]
 
-    def _build(self, design: Design, turn: Cycles, values: FloatArray, gear_ratio: FloatArray) -> list[FloatArray]:
-        """Where they are limited, what can be built of a batch; what takes long only of those that keep the rest."""
+    def _build(
+        self, design: Design, turn: Cycles, values: FloatArray, hopeful: BoolArray, gear_ratio: FloatArray
+    ) -> list[FloatArray]:
+        """Where it is limited, what can be built; what takes long only of the hopeful that keep the rest."""
         if not self.limits.build or not self.moments:
             return []
         values = np.column_stack([values, build_values(design, turn)])
-        within = np.all(margins(self.motion[: values.shape[1]], values) >= 0, axis=1)
+        within = hopeful & np.all(margins(self.motion[: values.shape[1]], values) >= 0, axis=1)
         geared = design.with_linkage(gear_ratio=gear_ratio[:, None])
         return [values[:, -4:], slow_values(geared, within, self.limits.build, self.moments)]
 
@@ -269,7 +280,7 @@ def make_problem(
     start: str | None = None,
     like: str | None = None,
     limits: Path = DEFAULT,
-    build: Mapping[str, float] | None = None,
+    build: Mapping[str, float] | None = BUILDABLE,
     knee_speed: float | None = None,
     hip_speed: float | None = None,
     caution: float = 0.0,
@@ -282,7 +293,8 @@ def make_problem(
     baseline. ripple: largest of the crank speed when ridden. start: a design whose rider, seat and coupler angle are
     kept; by default a printed one, with the rider and the seat of compared_with if that is a file. like: stands for
     both, and its gear ratio is the largest. limits: a problem file, whose design space is that around the start's
-    pivots if they are outside of the default one. build: of BuildLimits, see load_limits. caution, people: see Problem.
+    pivots if they are outside of the default one. build: what is changed of BuildLimits, by key; None for the paper's
+    limits alone. caution, people: see Problem.
     Raises InputError for what cannot be used, and for a start of another kind.
     """
     compared_with, start = like or compared_with, like or start

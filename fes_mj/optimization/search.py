@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 import numpy as np
-from scipy.optimize import differential_evolution
+from scipy.optimize import OptimizeResult, differential_evolution
 
 from fes_mj.common.arrays import FloatArray
 from fes_mj.common.errors import InputError, require_extra
@@ -61,12 +61,12 @@ class Search:
         self._history: list[tuple[int, float]] = []
         self._improved, self._counted = improved, counted
 
-    def __call__(self, x: FloatArray) -> FloatArray:
+    def __call__(self, x: FloatArray, to_beat: FloatArray | float = -np.inf) -> FloatArray:
         """Merit of each row of x, shape (n, variables) or without gear ratios; see Problem.evaluate."""
         rest = self.budget - self.evaluations
         if rest <= 0:
             raise BudgetSpentError
-        evaluation = self.problem.evaluate(x[:rest])
+        evaluation = self.problem.evaluate(x[:rest], np.broadcast_to(to_beat, len(x))[:rest])
         merit = self.problem.merit(evaluation)
         self.note(evaluation.x, merit)
         if len(x) > rest:
@@ -116,11 +116,20 @@ def feasible_start(search: Search, random: np.random.Generator) -> FloatArray:
 
 
 def differential(search: Search, start: Start, random: np.random.Generator) -> None:
-    """Differential evolution (scipy), started again from a new population whenever one has converged."""
+    """Differential evolution (scipy), started again from a new population whenever one has converged.
+
+    A trial replaces the member of its own number, or is forgotten: it has that one's merit to beat.
+    """
     bounds = search.problem.search[:-1]
+    to_beat: list[FloatArray] = []
+
+    def after_generation(intermediate_result: OptimizeResult) -> None:
+        to_beat[:] = [-intermediate_result.population_energies]
+
     while True:
+        to_beat.clear()  # nothing is known of the first population
         differential_evolution(
-            lambda x: -search(x.T),
+            lambda x: -search(x.T, *to_beat),
             bounds,
             x0=None if start is None else np.clip(start[:-1], *bounds.T),
             popsize=POPULATION,
@@ -132,6 +141,7 @@ def differential(search: Search, start: Start, random: np.random.Generator) -> N
             vectorized=True,
             updating="deferred",
             polish=False,
+            callback=after_generation,
         )
         start = None
 

@@ -63,10 +63,11 @@ def test_fit(tmp_path: Path) -> None:
 def test_optimise(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert runs.progress(tmp_path) is None
     monkeypatch.setattr(runs, "optimize", partial(fes_mj.optimize, budget=300))
-    run = runs.optimise(D1, P1P2, tmp_path)
-    best, problem = design_of(run["design"]), make_problem("cdt", P1P2, start="d1", compared_with="d1")
+    r1 = fes_mj.load_design("r1")
+    run = runs.optimise(r1, P1P2, tmp_path)
+    best, problem = design_of(run["design"]), make_problem("crt", P1P2, start="r1", compared_with="r1")
     evaluation = problem.evaluate(problem.variables(best)[None])
     assert evaluation.feasible.all()
     assert f"{evaluation.power[0, 0]:.2f} W" in run["verdict"]
-    assert evaluation.power[0, 0] >= problem.evaluate(problem.variables(D1)[None]).power[0, 0]
+    assert evaluation.power[0, 0] >= problem.evaluate(problem.variables(r1)[None]).power[0, 0]
     assert runs.progress(tmp_path) == f"{evaluation.power[0, 0]:.2f} W so far; 4 of 4 searches are through"

@@ -26,7 +26,7 @@ def test_limits_read_back(kind: str, build: dict[str, float] | None, tmp_path: P
 
 def test_every_limit_says_what_it_is_and_where_it_is_set() -> None:
     for kind in ("crt", "cdt", "trt"):
-        problem = make_problem(kind, MOMENTS, build={}, ripple=0.1)
+        problem = make_problem(kind, MOMENTS, ripple=0.1)
         assert {constraint.name for constraint in problem.constraints} == MEANINGS.keys()
 
 
@@ -35,7 +35,7 @@ def test_a_four_bar_stays_one(method: str) -> None:
     """What it lacks stays 0, however a method moves its variables."""
     if method == "cma-es":
         pytest.importorskip("cma")
-    found = fes_mj.optimize("trt", MOMENTS, method=method, budget=1000, searches=1).design
+    found = fes_mj.optimize("trt", MOMENTS, method=method, budget=1000, searches=1, build=None).design
     absent = ("pivot_to_crank", "pedal_arm", "coupler", "rocker")
     assert [getattr(found.linkage, name) for name in absent] == [0, 0, 0, 0]
     assert found.linkage.kind == "trt"
@@ -43,7 +43,7 @@ def test_a_four_bar_stays_one(method: str) -> None:
 
 def test_a_design_is_within_the_limits_of_its_own_problem() -> None:
     """The TRT of the paper, in its own place at its own speed, is feasible: the yardstick begins there."""
-    problem = make_problem("trt", MOMENTS, like="trt", build={})
+    problem = make_problem("trt", MOMENTS, like="trt")
     own = problem.variables(problem.template)
     broken = problem.violations_text(own)
     assert {part.split()[0] for part in broken.split(", ") if " is " in part} <= {"extrapolated_share"}, broken

@@ -8,7 +8,8 @@ import pytest
 
 import fes_mj
 from fes_mj.optimization.optimize import run_searches
-from fes_mj.optimization.search import STEP, BudgetSpentError, Search, feasible_start, random_pursuit
+from fes_mj.optimization.problem import make_problem
+from fes_mj.optimization.search import STEP, BudgetSpentError, Search, differential, feasible_start, random_pursuit
 from fes_mj.statics.turn import quasi_static
 from tests.optimization.conftest import SIX_BARS, problem_of
 
@@ -70,6 +71,36 @@ def test_random_pursuit_is_the_one_at_a_time_method() -> None:
     assert improvements > 5
     assert search.evaluations == len(search.seen)
     assert search.best == best
+
+
+class Thorough(Search):
+    """A search that computes everything of every design."""
+
+    def __call__(self, x: np.ndarray, to_beat: object = None) -> np.ndarray:
+        return super().__call__(x)
+
+
+def test_evolution_finds_the_same_without_what_takes_long_of_designs_that_lose(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of a limit that some keep; a stand-in for the forces and clearances counts the designs."""
+    looked_at = [0]
+
+    def crank(designs: fes_mj.Design, within: np.ndarray, *_: object) -> np.ndarray:
+        looked_at[0] += int(within.sum())
+        values = 1e4 * np.broadcast_to(designs.linkage.crank, (designs.size, 1))
+        return np.where(within[:, None], np.hstack([values, np.ones_like(values)]), np.nan)
+
+    monkeypatch.setattr("fes_mj.optimization.problem.slow_values", crank)
+    problem = make_problem("trt", fes_mj.load_moments("p1p2"))
+    results, counts = [], []
+    for kind in (Search, Thorough):
+        looked_at[0], search = 0, kind(problem, 4000)
+        with suppress(BudgetSpentError):
+            differential(search, None, np.random.default_rng(3))
+        results.append(search.result())
+        counts.append(looked_at[0])
+    assert np.array_equal(results[0].x, results[1].x)
+    assert np.array_equal(results[0].history, results[1].history)
+    assert counts[0] < 0.6 * counts[1]
 
 
 def test_evolution_beats_the_printed_design_within_the_same_limits() -> None:
