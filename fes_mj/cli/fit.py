@@ -13,6 +13,7 @@ from fes_mj.cli.options import (
     Cadence,
     DesignName,
     Dims,
+    Legs,
     MomentsOptions,
     Out,
     PeopleOfEachSex,
@@ -113,6 +114,7 @@ def fit(
     moments: MomentsOptions = MomentsOptions(),
     options: PrintOptions = PrintOptions(),
     cadence: Cadence | None = None,
+    legs: Legs = 1,
     dims: Dims = "identified",
     out: Out | None = None,
     population: Annotated[bool, Parameter(group=_POPULATION, negative="")] = False,
@@ -127,13 +129,14 @@ def fit(
     Args:
         cadence: Crank speed in rpm for which the seat is sought; by default the one at which the tricycle does 5.71
             km/h.
+        legs: One leg, or two, which may have moments of their own: the right leg's and the left leg's.
         out: The design file to write (.toml): the rider, and the seat where it was moved to.
         population: Instead of one rider a sample of men and women: who can ride, with which power.
         samples: People of each sex.
         seed: Of the random numbers.
         plot: A picture (.png) of the power over thigh and shank.
     """
-    loaded, joint_moments, limits = load_design(design, dims), moments.load_moments(), seat.load()
+    loaded, joint_moments, limits = load_design(design, dims), moments.load_moments(legs), seat.load()
     inputs, ratio = moments.inputs(design), loaded.linkage.gear_ratio
     # with another gear ratio the crank has the cadence at the speed of the tricycle
     loaded = loaded.with_linkage(gear_ratio=ratio * speed_at(cadence, loaded) / loaded.linkage.cadence)
@@ -184,11 +187,12 @@ def _print(result: SeatFit) -> None:
             ("mean crank power, W", with_error(summary["power_mean_W"], summary["power_sd_W"])),
             ("with the seat as drawn, W", or_dash(summary["power_unmoved_W"], ".2f", "does not turn")),
             ("the paper's rider, seat as drawn, W", or_dash(summary["power_paper_rider_W"], ".2f", "does not turn")),
-            *((f"{joint} angle, deg", span(ends)) for joint, ends in result.static.joint_range_deg.items()),
+            *((f"{joint} angle, deg", span(ends)) for joint, ends in result.static.first.joint_range_deg.items()),
         ]
     print_table(f"{result.drawn.name}; {result.moments.name}; {legs}", ("", "best seat"), rows)
     if result.static:
-        print_notes(result.static)
+        for turn in result.static.turns:
+            print_notes(turn)
         for name in result.ends:
             say(f"note: the seat is at the end of its range {name} (--{name}): a wider one may suit better")
         conclude(True, "Fits", ".")

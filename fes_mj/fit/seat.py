@@ -17,7 +17,7 @@ from fes_mj.fit.seats import SEAT_LIMITS, SeatLimits, Seats
 from fes_mj.linkage.design import Design, Rider
 from fes_mj.linkage.variables import crank_speed
 from fes_mj.moments.joint_moments import JointMoments
-from fes_mj.statics.turn import QuasiStatic, quasi_static
+from fes_mj.statics.turn import LegTurns
 from fes_mj.statics.work_table import WorkTable
 
 _CRANKS = (0.9, 0.8, 0.7, 0.6, 0.5)  # parts of the crank that are tried for a rider whom no seat suits
@@ -29,8 +29,8 @@ _WIDER = 0.30  # m and rad, by which the limits are widened for the same
 class SeatFit(Brief):
     """The best seat of a design, as drawn, for a rider within limits.
 
-    design: with the rider and the seat moved. static: its turn; None if the rider does not fit, and then `why` says by
-    how much and at which crank angle.
+    design: with the rider and the seat moved. static: its turn, of both legs if each has moments of its own; None if
+    the rider does not fit, and then `why` says by how much and at which crank angle.
     """
 
     drawn: Design
@@ -39,7 +39,7 @@ class SeatFit(Brief):
     limits: SeatLimits
     seat: Seats
     design: Design
-    static: QuasiStatic | None
+    static: LegTurns | None
     why: str | None
 
     @property
@@ -96,7 +96,7 @@ class SeatFit(Brief):
     def _power_as_drawn(self, rider: Rider) -> float | None:
         """Mean crank power of a rider with the seat as drawn, W; None if the linkage does not turn with him or her."""
         with suppress(InputError):
-            return quasi_static(replace(self.drawn, rider=rider), self.moments).power_mean
+            return _turn(replace(self.drawn, rider=rider), self.moments).power_mean
         return None
 
 
@@ -121,12 +121,16 @@ def fit_seat(design: Design, rider: Rider, moments: JointMoments, limits: SeatLi
         seated = replace(_in_workshop_digits(seat.moved(seated)), frame=design.frame.moved(complex(seat.shift)))
     static = None
     try:
-        turn = quasi_static(seated, moments)
+        turn = _turn(seated, moments)
         if not (why := underground(seated)):
             static = turn
     except InputError as error:
         why = str(error)
     return SeatFit(design, rider, moments, limits, seat, seated, static, why)
+
+
+def _turn(design: Design, moments: JointMoments) -> LegTurns:
+    return LegTurns.solve(design, moments, crank_speed(design), len(moments.of_legs))
 
 
 def _in_workshop_digits(design: Design) -> Design:

@@ -103,6 +103,11 @@ class JointMoments(Brief):
         """The moments of the leg that a name or its prefix (linkage.legs) belongs to."""
         return self.left if self.left and name.startswith("left_") else self
 
+    @property
+    def of_legs(self) -> "tuple[JointMoments, ...]":
+        """The moments of each leg that has its own, the right one's first."""
+        return (self,) if self.left is None else (self, self.left)
+
     def at_speed(self, relation: TorqueVelocity) -> "JointMoments":
         """The same moments of both legs, with a torque-velocity relation. Raises InputError as require_cadence."""
         self.require_cadence("with joint speed")

@@ -242,7 +242,7 @@ class LegTurns:
         cls, design: Design, moments: JointMoments, cadence: float, legs: int = 1, points: int | None = None
     ) -> "LegTurns":
         """Solve so many legs at a cadence in rad/s. Raises InputError as quasi_static."""
-        own = [moments] if legs == 1 or moments.left is None else [moments, moments.left]
+        own = moments.of_legs[:legs]
         return cls(tuple(quasi_static(design, leg, cadence, points) for leg in own), legs)
 
     @property

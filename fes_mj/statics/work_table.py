@@ -10,7 +10,8 @@ from scipy.integrate import cumulative_trapezoid
 from scipy.sparse import csr_array
 
 from fes_mj.common.arrays import FloatArray, IntArray
-from fes_mj.linkage.joints import PerJoint
+from fes_mj.common.errors import InputError
+from fes_mj.linkage.joints import JOINTS, PerJoint
 from fes_mj.moments.fourier import fourier
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.reference_tricycle import ReferenceTricycle
@@ -46,10 +47,19 @@ class WorkTable:
 
     @classmethod
     def of(cls, *moments: JointMoments) -> "WorkTable":
-        """Table of the given joint moments, a set each, all measured on the same tricycle."""
-        maps = [torque_map(one) for one in moments]
+        """Table of the given joint moments, a set each, all measured on the same tricycle.
+
+        Of legs with moments of their own a set is the mean, as power is that of a leg on average. Raises InputError
+        for legs that were measured on different tricycles.
+        """
+        maps = [[torque_map(leg) for leg in one.of_legs] for one in moments]
+        if len({tuple(torque.parameters(joint) for joint in JOINTS) for legs in maps for torque in legs}) > 1:
+            names = ", ".join(leg.name for one in moments for leg in one.of_legs)
+            raise InputError(f"{names}: moments measured on different tricycles have no angles in common; give one")
         return cls.tabulated(
-            lambda joint, angle: np.stack([torque.at_source(joint, angle) for torque in maps], axis=-1),
+            lambda joint, angle: np.stack(
+                [np.mean([torque.at_source(joint, angle) for torque in legs], axis=0) for legs in maps], axis=-1
+            ),
             moments[0].measured_on,
         )
 

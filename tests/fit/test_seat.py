@@ -2,17 +2,19 @@
 
 import math
 import re
+from dataclasses import replace
 
 import pytest
 
 import fes_mj
-from fes_mj.common.errors import AssemblyError
+from fes_mj.common.errors import AssemblyError, InputError
 from fes_mj.fit.seat import fit_seat, seat_text
-from fes_mj.fit.seats import OUTSIDE_EQUAL, SeatLimits, Seats, outside_range
+from fes_mj.fit.seats import OUTSIDE_EQUAL, POWER_EQUAL, SeatLimits, Seats, outside_range
 from fes_mj.linkage.design import Rider
 from fes_mj.linkage.design_file import design_toml
 from fes_mj.linkage.kinematics import solve
 from fes_mj.linkage.riders import populations
+from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.statics.cycles import cycles
 from fes_mj.statics.work_table import WorkTable
 
@@ -89,3 +91,25 @@ def test_a_seat_at_the_end_of_its_range_says_so_and_has_workshop_digits() -> Non
     moved = [line for line in design_toml(fit.design).splitlines() if line.startswith(("R1", "seat_angle"))]
     assert all(len(digits) <= 6 for digits in re.findall(r"\.(\d+)", "".join(moved)))
     assert fit_seat(design, Rider(0.41, 0.52), moments).ends == []
+
+
+def test_legs_with_moments_of_their_own_are_fitted_together() -> None:
+    """Power is their mean, and no seat that suits one leg alone is better for both."""
+    design, rider = fes_mj.load_design("r1"), Rider()
+    right, left = fes_mj.load_moments("p1p2"), fes_mj.load_moments("p1p3")
+    both = fit_seat(design, rider, fes_mj.load_moments("p1p2", left="p1p3"))
+    assert both.static
+
+    def mean_power(seated: fes_mj.Design) -> float:
+        return (fes_mj.quasi_static(seated, right).power_mean + fes_mj.quasi_static(seated, left).power_mean) / 2
+
+    assert both.static.power_mean == pytest.approx(mean_power(both.design), abs=1e-12)
+    for moments in (right, left):
+        assert both.static.power_mean > mean_power(fit_seat(design, rider, moments).design) - POWER_EQUAL
+
+
+def test_legs_measured_on_different_tricycles_are_not_averaged() -> None:
+    right, other = fes_mj.load_moments("p1p2"), fes_mj.load_moments("p1p3")
+    tricycle = replace(PAPER_TRICYCLE, design=PAPER_TRICYCLE.design.with_linkage(crank=0.16))
+    with pytest.raises(InputError, match="measured on different tricycles"):
+        WorkTable.of(replace(right, left=replace(other, measured_on=tricycle)))
