@@ -11,6 +11,7 @@ from fes_mj.cli.options import Out
 from fes_mj.cli.process import interruption_code
 from fes_mj.cli.search_options import SearchOptions, shell_word
 from fes_mj.common.console import conclude, errors, print_table, progress_bar, say
+from fes_mj.common.errors import InputError
 from fes_mj.common.parallel import Workers
 from fes_mj.common.text import printable
 from fes_mj.common.writing import require_replaceable, require_writable, write_files, write_text
@@ -19,6 +20,7 @@ from fes_mj.viewing.pages import require_page_packages
 
 if TYPE_CHECKING:
     from fes_mj.optimization.findings import Findings
+    from fes_mj.optimization.muscle_winner import MuscleWinner
     from fes_mj.optimization.optimize import Optimum
     from fes_mj.optimization.winner import Winner
 
@@ -57,15 +59,21 @@ def optimize(
     command = options.command(kind) + (f" -o {shell_word(out.name)}" if out else "")
     origin = f"Found by fes_mj {version('fes-mj')}:\n{command}"
     from fes_mj.optimization.findings import Findings
-    from fes_mj.optimization.winner import assess
+    from fes_mj.optimization.muscle_winner import MuscleWinner
+    from fes_mj.optimization.winner import Winner, assess
 
     findings = Findings(out, origin, options.recipe(kind)) if out else None
     try:
         optimum = _search(kind, moments, options, findings)
         # first: what was found stays, whatever becomes of the rest
         files = _write(optimum, origin, findings.out, options) if findings else {}
-        winner = assess(optimum.design, compared_with, moments, options.seed)
+        winner: Winner | MuscleWinner
+        if muscles := optimum.problem.muscles:
+            winner = MuscleWinner.of(optimum.design, compared_with, muscles)
+        else:
+            winner = assess(optimum.design, compared_with, moments, options.seed)
         if report:
+            assert isinstance(winner, Winner)  # _check_files
             from fes_mj.optimization.page import page_html
 
             write_text(report, page_html(winner, optimum, origin))
@@ -87,15 +95,16 @@ def optimize(
         lambda: _print(winner, optimum),
         report=report,
     )
-    return 0 if winner.case.agrees else 1
+    return 0 if winner.agrees else 1
 
 
 def _search(kind: str, moments: fes_mj.JointMoments, options: SearchOptions, findings: Findings | None) -> Optimum:
     """The best of all searches, with a bar that counts evaluations and says how long they take."""
-    from fes_mj.optimization.search import BUDGETS
+    from fes_mj.optimization.search import usual_budget
 
     searches = 1 if options.method == "nsga-ii" else options.searches
-    total = searches * (options.budget or BUDGETS[options.method])
+    problem = options.problem_options()
+    total = searches * (options.budget or usual_budget(options.method, problem["muscles"]))
     with progress_bar(f"{options.method}, evaluations", total, options.silent) as advance:
         return fes_mj.optimize(
             kind,
@@ -108,7 +117,7 @@ def _search(kind: str, moments: fes_mj.JointMoments, options: SearchOptions, fin
             workers=Workers(options.jobs, options.cluster),
             findings=findings,
             progress=advance,
-            **options.problem_options(),
+            **problem,
         )
 
 
@@ -129,6 +138,8 @@ def _check_files(out: Path | None, report: Path | None, options: SearchOptions) 
             require_replaceable([path], f"the {key.partition('_')[0]}", inputs)
     require_writable(report, "the page", ".html", inputs)
     if report:
+        if options.drive.drive == "muscles":
+            raise InputError("--report shows a turn under joint moments: not with --drive muscles")
         require_page_packages()
 
 
@@ -146,14 +157,14 @@ def _write(optimum: Optimum, origin: str, out: Path, options: SearchOptions) -> 
     return {key: str(path) for key, path in files.items()}
 
 
-def _print(winner: Winner, optimum: Optimum) -> None:
+def _print(winner: Winner | MuscleWinner, optimum: Optimum) -> None:
     """Tables of what was found, and notes on what to beware of."""
     front, design, people = optimum.front, winner.design, optimum.problem.people
     if doubts := winner.doubts(optimum):
         conclude(False, "Beware", f": {'; '.join(doubts)}.")
     if optimum.repair:
         say(f"the start did not keep the limits and was repaired: {optimum.repair}")
-    title = f"{design.name}: {design.linkage.title}; {winner.case.moments.name}"
+    title = f"{design.name}: {design.linkage.title}; {winner.driver}"
     print_table(f"{title}; {optimum.method}, {optimum.evaluations:,} evaluations", ("", "value"), winner.rows)
     print_table("Constraints", ("constraint", "value", "limit", ""), optimum.limit_rows)
     if people.count > 1:

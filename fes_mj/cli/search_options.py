@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import os
 import shlex
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from cyclopts import Group, Parameter
 from cyclopts.validators import Number
 
+from fes_mj.cli.drive import DriveOptions
 from fes_mj.cli.options import Flag, Jobs, MomentsOptions, PeopleOfEachSex, PrintOptions, Seed, needs
 from fes_mj.common.errors import InputError, require_extra
 from fes_mj.common.provenance import provenance
@@ -29,8 +30,9 @@ class SearchOptions(PrintOptions, MomentsOptions):
     """Options of a search.
 
     Args:
+        drive: What drives the legs.
         method: The method; cma-es and nsga-ii come with the extra `optimize`, and nsga-ii weighs both groups.
-        budget: Evaluations of each search (default 50,000; random pursuit stops by itself).
+        budget: Evaluations of each search (default 50,000, with --drive muscles 3,000; random pursuit stops by itself).
         searches: Independent searches, of which the best counts (nsga-ii makes one).
         seed: Of the random numbers; the same seed finds the same design, however many jobs.
         like: Your own design (trt, r1, ..., or a file): its rider, seat, place and cadence, its joint speeds as limits,
@@ -62,6 +64,7 @@ class SearchOptions(PrintOptions, MomentsOptions):
         cluster: Dask scheduler, tcp://host:port, to send the searches to.
     """
 
+    drive: DriveOptions = field(default_factory=DriveOptions)
     method: Methods = "differential-evolution"
     budget: Annotated[int | None, Parameter(validator=Number(gte=1000))] = None
     searches: Annotated[int, Parameter(validator=Number(gte=1))] = 4
@@ -108,8 +111,18 @@ class SearchOptions(PrintOptions, MomentsOptions):
             require_extra("build", "shapely")
         if self.method in _PACKAGES:
             require_extra("optimize", _PACKAGES[self.method])
+        if self.drive.drive == "muscles":
+            self._check_muscles()
         if self.smooth and self.method != "nsga-ii":
             raise InputError("--smooth is an objective of its own: it needs --method nsga-ii")
+
+    def _check_muscles(self) -> None:
+        """Refuse what is of joint moments alone."""
+        if self.drive.timing != "best":
+            raise InputError(f"--timing {self.drive.timing}: a design is found for muscles that are timed best")
+        self.drive.load_riders(self)
+        if self.caution or self.ripple_limit or self.method == "nsga-ii":
+            raise InputError("--caution, --ripple-limit and nsga-ii are for joint moments: not with --drive muscles")
 
     @property
     def overrides(self) -> dict[str, float]:
@@ -122,7 +135,9 @@ class SearchOptions(PrintOptions, MomentsOptions):
         """What they ask of the problem, as make_problem takes it."""
         from fes_mj.optimization.limits import DEFAULT
         from fes_mj.optimization.people import ONE_RIDER, sampled
+        from fes_mj.optimization.stimulated import MuscleDrive
 
+        by_muscles = self.drive.drive == "muscles"
         return {
             "compared_with": self.speeds_of,
             "start": self.start,
@@ -134,18 +149,20 @@ class SearchOptions(PrintOptions, MomentsOptions):
             "caution": self.caution,
             "ripple": None if self.ripple_limit is None else self.ripple_limit / 100,
             "people": ONE_RIDER if self.riders == "one" else sampled(self.riders, self.samples, self.sample_seed),
+            "muscles": MuscleDrive(self.drive.load_riders(self), self.drive.duty) if by_muscles else None,
         }
 
     def inputs(self, *designs: str) -> list[Path]:
         """The files that the options name, which no output may replace."""
-        named = (self.like, self.start, self.speeds_of, self.problem)
+        named = (self.like, self.start, self.speeds_of, self.problem, self.drive.muscles)
         return [*(Path(name) for name in named if name), *super().inputs(*designs)]
 
     def command(self, kind: str) -> str:
         """The command line, for a shell, that finds the same again with this version: what is not by default."""
-        words, defaults = ["fes_mj", "optimize", kind], SearchOptions()
-        for name, value in vars(self).items():
-            if name in _WITHOUT_EFFECT or value == getattr(defaults, name):
+        words, own, defaults = ["fes_mj", "optimize", kind], vars(self) | vars(self.drive), SearchOptions()
+        usual = vars(defaults) | vars(defaults.drive)
+        for name, value in own.items():
+            if name in _WITHOUT_EFFECT or value == usual[name]:
                 continue
             text = value[0] if isinstance(value, list) else value  # the one file of moments
             words.append(f"--{name.replace('_', '-')}" + ("" if value is True else f"={text}"))

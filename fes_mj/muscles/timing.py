@@ -55,6 +55,15 @@ def responded(stimulation: FloatArray, riders: Riders, cadence: FloatArray) -> F
     return answer(stimulation, *times)
 
 
+def widths_up_to(duty: float) -> FloatArray:
+    """Widths of windows, deg, that are no wider than this share of the turn. Raises InputError if there is none."""
+    if not STEP / 360 <= duty <= 1:
+        raise InputError(
+            f"duty is {duty:g}; it must be from {STEP / 360:.3f}, a window of {STEP} deg, to 1, all the turn"
+        )
+    return np.arange(STEP, np.floor(360 * duty / STEP + 1e-9) * STEP + 1, STEP)
+
+
 def best_windows(
     power: FloatArray, riders: Riders, cadence: Any, duty: float = DUTY, each_its_own: bool = False
 ) -> tuple[Windows, FloatArray]:
@@ -66,11 +75,7 @@ def best_windows(
     each_its_own: the best ones of every member instead, for one who has been measured completely.
     Raises InputError for a duty below that of a window of 5 deg, or above 1.
     """
-    if not STEP / 360 <= duty <= 1:
-        raise InputError(
-            f"duty is {duty:g}; it must be from {STEP / 360:.3f}, a window of {STEP} deg, to 1, all the turn"
-        )
-    widths = np.arange(STEP, np.floor(360 * duty / STEP + 1e-9) * STEP + 1, STEP)
+    widths = widths_up_to(duty)
     # in single precision, which tells windows apart by 1e-6 of the power
     single, cadence = np.float32, np.reshape(cadence, (-1, 1))
     since_on = (ANGLES - cadence * riders["delay_s"]).astype(single)

@@ -4,6 +4,7 @@ Forces and clearances take a thousand times as long as all else: they are comput
 limit and have more power than they have to beat, and are NaN of the others.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, fields
 from itertools import combinations
 from typing import Any
@@ -26,7 +27,7 @@ from fes_mj.statics.cycles import Cycles
 from fes_mj.statics.equilibrium import equilibrium
 from fes_mj.statics.friction import BearingLoss, Bearings
 from fes_mj.statics.joint_forces import JointForces, peaks
-from fes_mj.statics.turn import QuasiStatic
+from fes_mj.statics.turn import DrivenTurn
 
 # Of a link that is not sized yet, m: half of its width, its pins, its thickness.
 MARGIN, PIN, THICKNESS = 0.015, 0.012, 0.008
@@ -47,7 +48,8 @@ class BuildLimits:
     clearance_min: float = 0.005
 
 
-_COMMON = BuildLimits()
+COMMON = BuildLimits()
+_AS_GOOD = 0.01  # deg: a search looks at fewer crank angles
 PLAIN = Bearings(0.1, 0.008)
 KEYS = tuple(field.name for field in fields(BuildLimits))
 
@@ -96,12 +98,15 @@ def clearance(design: Design, points: int = POINTS) -> float:
     return least_clearance(Side(design, plates, pins, points))
 
 
-def slow_values(designs: Design, within: Any, limits: BuildLimits, moments: JointMoments) -> FloatArray:
-    """Pin force (N) and clearance (m) of a batch with its gear ratios, of the rows `within`; shape (designs, 2)."""
+def slow_values(designs: Design, within: Any, limits: BuildLimits, force: Callable[[Design], float]) -> FloatArray:
+    """Pin force (N) and clearance (m) of a batch with its gear ratios, of the rows `within`; shape (designs, 2).
+
+    force: the largest on a pin of a design, N.
+    """
     values = np.full((designs.size, 2), np.nan)
     for row in np.flatnonzero(within).tolist():
         design = designs.single(row)
-        values[row, 0] = pin_force(design, moments)
+        values[row, 0] = force(design)
         if values[row, 0] <= limits.pin_force_max:
             values[row, 1] = clearance(design)
     return values
@@ -120,8 +125,8 @@ class Buildability:
     friction_loss_W: float  # noqa: N815
 
     @classmethod
-    def of(cls, turn: QuasiStatic) -> "Buildability":
-        """Of a turn; friction in plain bearings."""
+    def of(cls, turn: DrivenTurn) -> "Buildability":
+        """Of a turn, whatever drives it; friction in plain bearings."""
         forces = JointForces(turn)
         try:
             least = clearance(turn.design, len(FULL_TURN))
@@ -129,7 +134,7 @@ class Buildability:
             least = None
         return cls(
             hip_swing_deg=float(np.ptp(turn.joint_range_deg.hip)),
-            extrapolated_share=turn.extrapolation.share,
+            extrapolated_share=float(turn.summary()["extrapolated_share"]),
             transmission_angle_min_deg=float(motion_characteristics(turn.motion)["transmission_angle_min_deg"]),
             hole_distance_min_m=float(hole_distance(turn.design)[0]),
             pin_force_max_N=max(force for joint, force in peaks(forces.with_masses).items() if joint not in JOINTS),
@@ -137,14 +142,14 @@ class Buildability:
             friction_loss_W=BearingLoss(forces, PLAIN).power,
         )
 
-    def doubts(self, limits: BuildLimits = _COMMON) -> list[str]:
+    def doubts(self, limits: BuildLimits = COMMON) -> list[str]:
         """In words, what of it leaves the limits."""
         hole, swing, share = 1e3 * self.hole_distance_min_m, self.hip_swing_deg, self.extrapolated_share
         sayings = (
-            (swing < limits.hip_swing_min, f"the hip hardly moves, by {swing:.1f} deg"),
+            (swing < limits.hip_swing_min - _AS_GOOD, f"the hip hardly moves, by {swing:.1f} deg"),
             (share > limits.extrapolated_max, f"for {100 * share:.0f} % of the turn no moments are known"),
             (
-                self.transmission_angle_min_deg < limits.transmission_angle_min,
+                self.transmission_angle_min_deg < limits.transmission_angle_min - _AS_GOOD,
                 f"the transmission angle goes down to {self.transmission_angle_min_deg:.0f} deg",
             ),
             (

@@ -18,6 +18,7 @@ from fes_mj.linkage.variables import COMPONENTS, LENGTHS
 from fes_mj.moments.reference_tricycle import ReferenceTricycle
 from fes_mj.optimization.buildable import KEYS, BuildLimits, hole_distance, transmission_angle
 from fes_mj.statics.cycles import Cycles
+from fes_mj.statics.extrapolation import NO_MORE
 
 DEFAULT = DATA / "optimization.toml"
 PIVOTS = ("R1x", "R1y", "R7x", "R7y")
@@ -174,23 +175,29 @@ def range_constraints(limits: Limits) -> tuple[Constraint, ...]:
 
 
 def motion_constraints(
-    limits: Limits, joint_speed: PerJoint[float], gear_ratios: tuple[float, float], ripple: float | None
+    limits: Limits,
+    joint_speed: PerJoint[float],
+    gear_ratios: tuple[float, float],
+    ripple: float | None,
+    muscles: bool = False,
 ) -> tuple[Constraint, ...]:
-    """Constraints on the turn; joint_speed in deg/s, as of Problem."""
+    """Constraints on the turn, first those whose values are known at once; joint_speed in deg/s, as of Problem."""
+    known, build = ("muscles", 0.0) if muscles else ("overlap", _LEAST_OVERLAP), build_constraints(limits.build)
     return (
         Constraint("leg_reach", "m", True, LEAST_CLEARANCE, 0.01),
         *range_constraints(limits),
         *(Constraint(f"{joint}_speed", "deg/s", False, speed, 10.0) for joint, speed in joint_speed.items()),
-        *(Constraint(f"{joint}_overlap", "deg", True, _LEAST_OVERLAP, 5.0) for joint in JOINTS),
+        *(Constraint(f"{joint}_{known[0]}", "deg", True, known[1], 5.0) for joint in JOINTS),
         Constraint("gear_ratio_min", "", True, gear_ratios[0], 0.1),
         Constraint("gear_ratio", "", False, gear_ratios[1], 0.1),
+        *build[:-2],
         *([Constraint("speed_ripple", "", False, ripple, 0.05)] if ripple is not None else []),
-        *build_constraints(limits.build),
+        *build[-2:],
     )
 
 
 def build_constraints(build: BuildLimits | None) -> tuple[Constraint, ...]:
-    """Constraints of what can be built, if there are any."""
+    """Constraints of what can be built, if there are any; the last two take long."""
     if build is None:
         return ()
     return (
@@ -227,29 +234,44 @@ def length_values(design: Design, lengths: FloatArray, polygon: ComplexArray) ->
 
 
 def motion_values(
-    turn: Cycles, reference: ReferenceTricycle, speeds: PerJoint[FloatArray], gear_ratio: FloatArray
+    turn: Cycles, speeds: PerJoint[FloatArray], known: PerJoint[FloatArray], gear_ratio: FloatArray
 ) -> FloatArray:
-    """Values of the constraints on the turn but the ripple, in their order, shape (n, 11)."""
+    """Values of the paper's constraints on the turn, in their order, shape (n, 11); known: the joints' overlap, deg."""
     ranges = [np.degrees(side) for joint in turn.joints for side in (joint.low, joint.high)]
     rates = (speeds[joint] * gear_ratio for joint in JOINTS)
-    overlaps = (_overlap(joint, turn, reference) for joint in JOINTS)
-    return np.column_stack([turn.turning.reach, *ranges, *rates, *overlaps, gear_ratio, gear_ratio])
+    return np.column_stack([turn.turning.reach, *ranges, *rates, *known, gear_ratio, gear_ratio])
 
 
-def _overlap(joint: str, turn: Cycles, reference: ReferenceTricycle) -> FloatArray:
+def overlap(joint: str, turn: Cycles, reference: ReferenceTricycle) -> FloatArray:
     """How far a joint comes into the range of the moments, from whichever side, deg, shape (n,); not above 0: never."""
-    low, high, *_ = turn.joints[joint]
-    (bottom, top), shift = reference.ranges[joint], reference.turns_to_range(joint, low, high)
-    overlap = np.degrees(np.minimum(high + shift - bottom, top - low - shift))
+    (low, high), (bottom, top) = _beside(joint, turn, reference), reference.ranges[joint]
+    common = np.degrees(np.minimum(high - bottom, top - low))
     # the angle beside a dead centre is too sharp for the parabola that found its extreme
-    return np.where(turn.outside[1][joint], np.minimum(overlap, 0.0), overlap)
+    return np.asarray(np.where(turn.outside[1][joint], np.minimum(common, 0.0), common))
 
 
-def build_values(design: Design, turn: Cycles) -> FloatArray:
-    """Values of build_constraints but for force and clearance, in their order, shape (n, 4)."""
+def _beside(joint: str, turn: Cycles, reference: ReferenceTricycle) -> tuple[FloatArray, FloatArray]:
+    """A joint's smallest and largest angle, rad, taken by whole turns to where the moments' range is, shape (n,)."""
+    low, high, *_ = turn.joints[joint]
+    shift = reference.turns_to_range(joint, low, high)
+    return np.asarray(low + shift), np.asarray(high + shift)
+
+
+def outside_share(turn: Cycles, reference: ReferenceTricycle) -> FloatArray:
+    """Share of the turn outside the moments' range, shape (n,); not 0 where it is left between two crank angles."""
+    excess = []
+    for joint in JOINTS:
+        (low, high), (bottom, top) = _beside(joint, turn, reference), reference.ranges[joint]
+        excess += [bottom - low, high - top]
+    between = (np.max(excess, axis=0) > NO_MORE / 2) / turn.angles[0].knee.shape[1]
+    return np.asarray(np.maximum(turn.outside[0], between))
+
+
+def build_values(design: Design, turn: Cycles, outside: FloatArray) -> FloatArray:
+    """Values of build_constraints but for force and clearance, in their order, shape (n, 4); outside: share, (n,)."""
     hip = turn.joints.hip
     swing, angle = np.degrees(hip.high - hip.low), transmission_angle(design, turn)
-    return np.column_stack([hole_distance(design), angle, swing, turn.outside[0]])
+    return np.column_stack([hole_distance(design), angle, swing, outside])
 
 
 def margins(constraints: tuple[Constraint, ...], values: FloatArray) -> FloatArray:
@@ -282,6 +304,10 @@ MEANINGS = {
     },
     **{f"{joint}_speed": Meaning(f"mean {joint} speed", f"--{joint}-speed-limit") for joint in JOINTS},
     **{f"{joint}_overlap": Meaning(f"how far the {joint} comes into the moments' range", "always") for joint in JOINTS},
+    **{
+        f"{joint}_muscles": Meaning(f"how far the {joint} stays within the known lengths of muscles", "always")
+        for joint in JOINTS
+    },
     "gear_ratio_min": Meaning("gear ratio, of the slowest cadence that can be run", "always"),
     "gear_ratio": Meaning("gear ratio: crank turns per turn of the wheel", "limits.gear_ratio_max"),
     "speed_ripple": Meaning("ripple of the crank's speed", "--ripple-limit"),

@@ -24,7 +24,7 @@ from fes_mj.optimization.limits import MEANINGS, PIVOTS, VARIED
 from fes_mj.optimization.pareto import Front, pareto_front
 from fes_mj.optimization.problem import LENGTH_COUNT, Evaluation, Problem, make_problem
 from fes_mj.optimization.repair import changes, repaired
-from fes_mj.optimization.search import BUDGETS, METHODS, BudgetSpentError, Result, Search, Start
+from fes_mj.optimization.search import METHODS, BudgetSpentError, Result, Search, Start, usual_budget
 from fes_mj.statics.cycles import cycles
 from fes_mj.statics.work_table import WorkTable
 
@@ -142,7 +142,7 @@ def optimize(
 
     method: one of search.METHODS, of which the best of so many independent searches counts, or "nsga-ii", which makes
     one and weighs the powers of both rider groups and, if `smooth`, the least fluctuation of energy. budget:
-    evaluations of each search, by default search.BUDGETS. seed: the same one finds the same design, wherever the
+    evaluations of each search, by default search.usual_budget. seed: the same one finds the same design, wherever the
     searches run. findings: where results are kept, and finished ones taken from. progress is told how many more
     of the budgets' evaluations are behind. problem: limits, start, people: the arguments of make_problem.
 
@@ -162,8 +162,9 @@ def optimize(
         repair = changes(drawn, start)
     with findings.searching(task) if findings else nullcontext():
         if method == "nsga-ii":
-            front = _front(task, budget or BUDGETS[method], seed, smooth, findings)
-            progress(BUDGETS[method] if budget is None else budget)
+            budget = budget or usual_budget(method, None)
+            front = _front(task, budget, seed, smooth, findings)
+            progress(budget)
             best = front.x[int(np.argmax(front.power.mean(axis=1)))]
             return Optimum(task, method, name, best, front.evaluations, front)
         results = run_searches(
@@ -200,7 +201,7 @@ def run_searches(
     """
     seeds = SeedSequence(seed).spawn(searches)
     outcomes: dict[int, Result | InputError] = {**findings.finished()} if findings else {}
-    budget, here = budget or BUDGETS[method], workers.jobs == 1 and not workers.cluster
+    budget, here = budget or usual_budget(method, problem.muscles), workers.jobs == 1 and not workers.cluster
     progress(budget * len(outcomes))
     missing = [number for number in range(searches) if number not in outcomes]
     kept_at_once = None if workers.cluster else findings

@@ -18,7 +18,7 @@ from fes_mj.linkage.design_file import DESIGNS, load_design
 from fes_mj.linkage.joints import JOINTS, PerJoint
 from fes_mj.linkage.variables import COMPONENTS, VARIABLES, component, replaced
 from fes_mj.moments.joint_moments import JointMoments
-from fes_mj.optimization.buildable import slow_values
+from fes_mj.optimization.buildable import pin_force, slow_values
 from fes_mj.optimization.evenness import RippleLimit
 from fes_mj.optimization.limits import (
     DEFAULT,
@@ -34,8 +34,11 @@ from fes_mj.optimization.limits import (
     margins,
     motion_constraints,
     motion_values,
+    outside_share,
+    overlap,
 )
 from fes_mj.optimization.people import ONE_RIDER, People
+from fes_mj.optimization.stimulated import MuscleDrive
 from fes_mj.statics.cycles import CYCLE_POINTS, Cycles, cycles, joint_speeds
 from fes_mj.statics.work_table import WorkTable, uncertain_table
 
@@ -91,7 +94,7 @@ class Problem:
     work_table.uncertain_table, how many standard deviations of the gain over `baseline` (power of a design to beat,
     shape (sets,)) are taken off it. people: who else rides it; the limits on joints and their speeds hold for each, and
     the power is the people's. ripple: of the crank speed when ridden, if it is limited. moments: for forces on pins, if
-    these are limited.
+    these are limited. muscles: drive instead of moments; the gear ratio is then a variable like all others.
     """
 
     template: Design
@@ -103,6 +106,7 @@ class Problem:
     people: People = ONE_RIDER
     ripple: RippleLimit | None = None
     moments: JointMoments | None = None
+    muscles: MuscleDrive | None = None
     points: int = CYCLE_POINTS
 
     def __post_init__(self) -> None:
@@ -117,6 +121,11 @@ class Problem:
         return np.vstack([own[:-1], self.people.search, own[-1:]])
 
     @property
+    def varied(self) -> FloatArray:
+        """Search ranges of what evolution varies: without the gear ratio, where power is proportional to it."""
+        return self.search if self.muscles else self.search[:-1]
+
+    @property
     def geometry(self) -> tuple[Constraint, ...]:
         """Constraints on the lengths alone."""
         return length_constraints(self.limits)
@@ -125,7 +134,7 @@ class Problem:
     def motion(self) -> tuple[Constraint, ...]:
         """Constraints on the turn."""
         ripple = self.ripple.limit if self.ripple else None
-        return motion_constraints(self.limits, self.joint_speed, self.gear_ratios, ripple)
+        return motion_constraints(self.limits, self.joint_speed, self.gear_ratios, ripple, self.muscles is not None)
 
     @property
     def gear_ratios(self) -> tuple[float, float]:
@@ -188,22 +197,57 @@ class Problem:
         chosen = free.shape == x.shape
         gear_ratio = np.full(len(x), self.gear_ratios[1]) if chosen else x[:, -1].copy()
         if sound.any():
-            ridden = self.people.seated(design.taken(sound), free[sound, LENGTH_COUNT:])
+            ridden, riders = self.people.seated(design.taken(sound), free[sound, LENGTH_COUNT:]), self.people.count
             turn = cycles(ridden, self.table, self.points)
             # cadence and joint speeds are those at gear ratio 1
-            cadence, riders = self._cadence_of_one, self.people.count
-            speeds = turn.joints.map(lambda joint: np.degrees(joint.travel) * turns_per_second(cadence))
+            per_s = turns_per_second(self._cadence_of_one)
+            speeds = turn.joints.map(lambda joint: np.degrees(joint.travel) * per_s)
             if chosen:
                 fastest = np.minimum(*(self.joint_speed[joint] / speeds[joint] for joint in JOINTS))
                 for_all = fastest.reshape(-1, riders).min(axis=1)
                 gear_ratio[sound] = np.fmin(for_all * (1 - _HAIR), self.gear_ratios[1])
             ratios = np.repeat(gear_ratio[sound], riders)
-            power[sound] = self.people.power(turn.work * (turns_per_second(cadence) * ratios[:, None]))
-            values = motion_values(turn, self.table.measured_on, speeds, ratios)
-            hopeful = np.repeat((self.worth(power) >= to_beat)[sound], riders)
-            values = np.column_stack([values, *self._ripple(ridden, values, hopeful, ratios)])
-            motion[sound] = self._worst(np.column_stack([values, *self._build(ridden, turn, values, hopeful, ratios)]))
+            geared = ridden.with_linkage(gear_ratio=ratios[:, None])
+            at_once = self._at_once(geared, turn, speeds, ratios)
+            within = np.all(margins(self.motion[: at_once.shape[1]], at_once) >= 0, axis=1)
+            power[sound] = self.people.power(self._power(geared, within, turn.work * (per_s * ratios[:, None])))
+            hopeful = within & np.repeat((self.worth(power) >= to_beat)[sound], riders)
+            motion[sound] = self._worst(np.column_stack([at_once, *self._in_time(geared, hopeful)]))
         return Evaluation(np.column_stack([free, gear_ratio]), power, np.hstack([lengths, motion]), self.constraints)
+
+    def _at_once(
+        self, design: Design, turn: Cycles, speeds: PerJoint[FloatArray], gear_ratio: FloatArray
+    ) -> FloatArray:
+        """Values of the constraints on the turn that do not take long, in their order, shape (n, constraints)."""
+        if self.muscles:
+            known = self.muscles.inside(turn)
+            outside: FloatArray = np.zeros(design.size)
+        else:
+            known = PerJoint.of(lambda joint: overlap(joint, turn, self.table.measured_on))
+            outside = outside_share(turn, self.table.measured_on)
+        values = motion_values(turn, speeds, known, gear_ratio)
+        return np.column_stack([values, build_values(design, turn, outside)]) if self.limits.build else values
+
+    def _power(self, design: Design, within: BoolArray, by_moments: FloatArray) -> FloatArray:
+        """Mean crank power, W, shape (n, sets): of muscles that of the designs `within` the limits, else NaN."""
+        if not self.muscles:
+            return by_moments
+        power = np.full((design.size, 1), np.nan)
+        if within.any():
+            power[within, 0] = self.muscles.power(design.taken(within))
+        return power
+
+    def _in_time(self, design: Design, within: BoolArray) -> list[FloatArray]:
+        """Values of the constraints that take long, of the designs `within` all others, else NaN, in their order."""
+        columns = []
+        if self.ripple:
+            columns.append(np.full(design.size, np.nan))
+            if within.any():
+                columns[0][within] = self.ripple.ripple(design.taken(within))
+                within = within & (columns[0] <= self.ripple.limit)
+        if self.limits.build:
+            columns.append(slow_values(design, within, self.limits.build, self._pin_force))
+        return columns
 
     def worth(self, power: FloatArray) -> FloatArray:
         """What is maximised, W, shape (n,); power: shape (n, sets).
@@ -237,29 +281,12 @@ class Problem:
         )
         return ", ".join(parts) or "the thigh swings through 180 deg or more"
 
-    def _ripple(
-        self, design: Design, values: FloatArray, hopeful: BoolArray, gear_ratio: FloatArray
-    ) -> list[FloatArray]:
-        """Where it is limited, the ripple of the hopeful that keep the limits of which `values` are, else NaN."""
-        if not self.ripple:
-            return []
-        ripple = np.full(len(values), np.nan)
-        within = hopeful & np.all(margins(self.motion[: values.shape[1]], values) >= 0, axis=1)
-        if within.any():
-            geared = design.with_linkage(gear_ratio=gear_ratio[:, None])
-            ripple[within] = self.ripple.ripple(geared.taken(within))
-        return [ripple]
-
-    def _build(
-        self, design: Design, turn: Cycles, values: FloatArray, hopeful: BoolArray, gear_ratio: FloatArray
-    ) -> list[FloatArray]:
-        """Where it is limited, what can be built; what takes long only of the hopeful that keep the rest."""
-        if not self.limits.build or not self.moments:
-            return []
-        values = np.column_stack([values, build_values(design, turn)])
-        within = hopeful & np.all(margins(self.motion[: values.shape[1]], values) >= 0, axis=1)
-        geared = design.with_linkage(gear_ratio=gear_ratio[:, None])
-        return [values[:, -4:], slow_values(geared, within, self.limits.build, self.moments)]
+    def _pin_force(self, design: Design) -> float:
+        """Largest on any pin of a design, N."""
+        if self.muscles:
+            return self.muscles.pin_force(design)
+        assert self.moments, "limits of what can be built need the moments"
+        return pin_force(design, self.moments)
 
     def _worst(self, values: FloatArray) -> FloatArray:
         """Of each constraint on the turn over all riders, shape (n, constraints); values: (n * riders, constraints)."""
@@ -286,6 +313,7 @@ def make_problem(
     caution: float = 0.0,
     ripple: float | None = None,
     people: People = ONE_RIDER,
+    muscles: MuscleDrive | None = None,
 ) -> Problem:
     """The problem for a kind of linkage ("crt", "cdt", "trt") under joint moments.
 
@@ -294,7 +322,7 @@ def make_problem(
     kept; by default a printed one, with the rider and the seat of compared_with if that is a file. like: stands for
     both, and its gear ratio is the largest. limits: a problem file, whose design space is that around the start's
     pivots if they are outside of the default one. build: what is changed of BuildLimits, by key; None for the paper's
-    limits alone. caution, people: see Problem.
+    limits alone. caution, people, muscles: see Problem.
     Raises InputError for what cannot be used, and for a start of another kind.
     """
     compared_with, start = like or compared_with, like or start
@@ -320,5 +348,7 @@ def make_problem(
     speeds, asked = joint_speeds(other, table).map(lambda speed: speed * (1 + 1e-9)), PerJoint(knee_speed, hip_speed)
     speed = PerJoint(*(speed if limit is None else limit for speed, limit in zip(speeds, asked, strict=True)))
     baseline = cycles(other, table).work[0] * turns_per_second(other.linkage.cadence)
+    if muscles and (caution or ripple):
+        raise InputError("caution and the limit on the ripple are for joint moments; muscles have neither")
     even = None if ripple is None else RippleLimit(ripple, moments)
-    return Problem(template, table, known, speed, caution, baseline, people, even, moments)
+    return Problem(template, table, known, speed, caution, baseline, people, even, moments, muscles)

@@ -20,19 +20,19 @@ def repaired(problem: Problem, start: FloatArray, seed: int = 0) -> FloatArray:
     Designs are tried at growing distances around the one that broke the limits least, then nearer to the start again.
     Raises InputError, saying which limits of the problem file are in the way, if none was found.
     """
-    low, high = problem.search[:-1].T
+    low, high = problem.varied.T
     width, random = high - low, np.random.default_rng(seed)
-    origin = np.clip(start[:-1], low, high)
+    origin = np.clip(start[: len(low)], low, high)
     best, violation = start, np.inf
     for _ in range(_ROUNDS):
         for distance in _DISTANCES:
-            around = origin if np.isinf(violation) else best[:-1]
+            around = origin if np.isinf(violation) else best[: len(low)]
             x = np.clip(around + distance * width * random.standard_normal((_TRIED, len(low))), low, high)
             evaluation = problem.evaluate(np.vstack([around, x]))
             if evaluation.feasible.any():
                 kept = evaluation.x[evaluation.feasible]
                 return np.asarray(
-                    kept[np.argmin(np.abs((kept[:, :-1] - origin) / np.where(width, width, 1)).sum(axis=1))]
+                    kept[np.argmin(np.abs((kept[:, : len(low)] - origin) / np.where(width, width, 1)).sum(axis=1))]
                 )
             least = int(np.argmin(evaluation.violation))
             if evaluation.violation[least] < violation:

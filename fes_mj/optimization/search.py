@@ -1,6 +1,6 @@
 """The single-objective methods: two evolutionary ones from libraries, the paper's own, and the search they all share.
 
-The evolutionary ones vary all but the gear ratio, which follows from the joint speeds.
+The evolutionary ones vary all but the gear ratio where power is proportional to it: it follows from the joint speeds.
 """
 
 from collections.abc import Callable
@@ -120,7 +120,7 @@ def differential(search: Search, start: Start, random: np.random.Generator) -> N
 
     A trial replaces the member of its own number, or is forgotten: it has that one's merit to beat.
     """
-    bounds = search.problem.search[:-1]
+    bounds = search.problem.varied
     to_beat: list[FloatArray] = []
 
     def after_generation(intermediate_result: OptimizeResult) -> None:
@@ -131,7 +131,7 @@ def differential(search: Search, start: Start, random: np.random.Generator) -> N
         differential_evolution(
             lambda x: -search(x.T, *to_beat),
             bounds,
-            x0=None if start is None else np.clip(start[:-1], *bounds.T),
+            x0=None if start is None else np.clip(start[: len(bounds)], *bounds.T),
             popsize=POPULATION,
             maxiter=search.budget,
             tol=1e-6,
@@ -149,7 +149,7 @@ def differential(search: Search, start: Start, random: np.random.Generator) -> N
 def cma_es(search: Search, start: Start, random: np.random.Generator) -> None:
     """CMA-ES (pycma), started again with a doubled population whenever it has converged."""
     cma = require_extra("optimize", "cma")
-    low, high = search.problem.search[:-1].T
+    low, high = search.problem.varied.T
     population = CMA_POPULATION
     while True:
         x0 = feasible_start(search, random) if start is None else start
@@ -161,7 +161,7 @@ def cma_es(search: Search, start: Start, random: np.random.Generator) -> None:
             "tolfun": 1e-6,
         }
         width = np.where(high > low, high - low, 1.0)  # a variable that a linkage lacks has none
-        strategy = cma.CMAEvolutionStrategy(np.clip((x0[:-1] - low) / width, 0, 1), CMA_SIGMA, options)
+        strategy = cma.CMAEvolutionStrategy(np.clip((x0[: len(low)] - low) / width, 0, 1), CMA_SIGMA, options)
         while not strategy.stop():
             trials = np.array(strategy.ask())
             strategy.tell(trials, -search(low + trials * (high - low)))
@@ -202,5 +202,12 @@ METHODS: dict[str, Method] = {
     "cma-es": cma_es,
     "random-pursuit": random_pursuit,
 }
-# Evaluations of one search. Random pursuit stops by itself, after 0.04 to 1 million trials.
+# Evaluations of one search. Random pursuit stops by itself, after 0.04 to 1 million trials. Under muscles an evaluation
+# takes a thousand times as long.
 BUDGETS = {"differential-evolution": 50_000, "cma-es": 50_000, "random-pursuit": 5_000_000, "nsga-ii": 50_000}
+MUSCLE_BUDGET = 3000
+
+
+def usual_budget(method: str, muscles: object) -> int:
+    """Evaluations of one search by a method, with muscles or (None) without."""
+    return MUSCLE_BUDGET if muscles else BUDGETS[method]

@@ -12,7 +12,7 @@ from fes_mj.linkage.design import Design
 from fes_mj.linkage.joints import PerJoint
 from fes_mj.linkage.variables import lengths, with_lengths
 from fes_mj.moments.joint_moments import JointMoments
-from fes_mj.optimization.buildable import Buildability
+from fes_mj.optimization.buildable import COMMON, Buildability
 from fes_mj.riding.ride import Ride, steady_ripple
 from fes_mj.statics.cycles import cycles, joint_speeds
 from fes_mj.statics.turn import difference_sd, quasi_static
@@ -102,6 +102,16 @@ class Winner:
         return self.case.design
 
     @property
+    def driver(self) -> str:
+        """What moves the legs, in a few words."""
+        return self.case.moments.name
+
+    @property
+    def agrees(self) -> bool:
+        """Whether dynamics and statics do."""
+        return self.case.agrees
+
+    @property
     def smoothness(self) -> dict[str, float]:
         """How uneven it is, as JSON names and units it: crank power of one leg as simulated, and the crank's speed."""
         power = self.case.simulation.power
@@ -149,7 +159,7 @@ class Winner:
 
     def doubts(self, optimum: "Optimum") -> list[str]:
         """Why it may not be what was sought: what it leaves of the limits of what can be built, edges of the search."""
-        return [*self.build.doubts(), *optimum.edges]
+        return [*self.build.doubts(optimum.problem.limits.build or COMMON), *optimum.edges]
 
     def summary(self, optimum: "Optimum") -> dict[str, Any]:
         """The result as JSON names and units it; optimum: of the search that found the design."""

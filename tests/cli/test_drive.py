@@ -60,3 +60,50 @@ def test_what_does_not_go_together_is_refused_in_one_line(capsys, arguments, sai
     assert (code, out) == (2, "")
     assert said in err
     assert len(err.strip().splitlines()) == 1
+
+
+def test_optimize_finds_a_design_for_muscles(capsys, tmp_path):
+    load_riders("p1p2").most_probable.save(tmp_path / "mine.npz")
+    best, ensemble = str(tmp_path / "best.toml"), ("--muscles", str(tmp_path / "mine.npz"))
+    search = (
+        "optimize",
+        "trt",
+        *MUSCLES,
+        *ensemble,
+        "--start",
+        "trt",
+        "--budget",
+        "1000",
+        "--searches",
+        "1",
+        "--limits",
+        "paper",
+    )
+    code, content = answer(capsys, *search, "-o", best)
+    assert code == 0
+    assert (content["drive"], content["timing"], content["evaluations"]) == ("muscles", "best", 1000)
+    assert (content["feasible"], content["violations"]) == (True, [])
+    assert content["gain_W"] > 0
+    assert "--drive=muscles" in content["command"]
+    again = answer(capsys, "static", best, *MUSCLES, *ensemble)[1]
+    for key in ("power_mean_W", "power_sd_W", "cadence_rpm"):
+        assert again[key] == pytest.approx(content[key]), key
+    assert again["windows_deg"] == content["windows_deg"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("--timing", "measured"), "--timing measured"),
+        (("--caution", "1"), "--caution"),
+        (("--method", "nsga-ii"), "nsga-ii"),
+        (("--duty", "0"), "duty is 0"),
+        (("--moments", "mine.csv"), "--muscles"),
+        (("--report", "page.html"), "--report"),
+    ],
+)
+def test_optimize_refuses_what_is_of_moments_alone(capsys, arguments, said):
+    code, out, err = result(capsys, "optimize", "trt", *MUSCLES, *arguments)
+    assert (code, out) == (2, "")
+    assert said in err
+    assert err.count("\n") <= 3

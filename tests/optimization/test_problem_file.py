@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 
 import fes_mj
+from fes_mj.muscles.riders import load_riders
 from fes_mj.optimization.limits import MEANINGS, load_limits
 from fes_mj.optimization.problem import make_problem
 from fes_mj.optimization.problem_file import problem_text
+from fes_mj.optimization.stimulated import MuscleDrive
 
 MOMENTS = fes_mj.load_moments("p1p2")
 
@@ -25,9 +27,10 @@ def test_limits_read_back(kind: str, build: dict[str, float] | None, tmp_path: P
 
 
 def test_every_limit_says_what_it_is_and_where_it_is_set() -> None:
+    by_muscles = {"muscles": MuscleDrive(load_riders("p1p2"))}
     for kind in ("crt", "cdt", "trt"):
-        problem = make_problem(kind, MOMENTS, ripple=0.1)
-        assert {constraint.name for constraint in problem.constraints} == MEANINGS.keys()
+        problems = (make_problem(kind, MOMENTS, **options) for options in ({"ripple": 0.1}, by_muscles))
+        assert {constraint.name for problem in problems for constraint in problem.constraints} == MEANINGS.keys()
 
 
 @pytest.mark.parametrize("method", ["cma-es", "random-pursuit", "differential-evolution"])
