@@ -32,8 +32,8 @@ SEATS = ("unmoved", "fitted")
 GRADES = ("turns", "share", "inside")
 PEOPLE = {"men": "man", "women": "woman"}
 # Thighs and shanks for which the best seat is sought; a person in between tries those of the four nearest, and one
-# between these (PopulationFit.map_error).
-_NODES = 7
+# between these; what that and the shorter search at the nodes lose is PopulationFit.map_error.
+_NODES, _GENERATIONS = 7, (20, 27, 30)
 _PROBES = 5  # people of each sex whose seat is sought as well, for what that loses
 _FINE = 61  # thighs and shanks of the map of the seat as drawn
 _MARGIN = 1e-6  # m, so that the extreme people are inside the map
@@ -141,7 +141,7 @@ def fit_population(
     )
     rows = []
     for length in thigh:
-        rows.append(np.column_stack(best_seats(design, np.full(_NODES, length), shank, table, limits)[0]))
+        rows.append(np.column_stack(best_seats(design, np.full(_NODES, length), shank, table, limits, _GENERATIONS)[0]))
         done()
     seats, riders, errors = np.stack(rows), {}, []
     for who, people in legs.items():

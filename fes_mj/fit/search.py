@@ -14,7 +14,7 @@ from fes_mj.statics.work_table import WorkTable
 # Seats tried for a rider: a grid over the limits, then generations of a population on each of the three aims. On the
 # last one powers that count as equal narrow from the first of _SLACK to POWER_EQUAL, so that the population can follow
 # the curved ridge on which they lie; tests/fit/test_search.py has what that leaves against every seat of a fine grid.
-_GRID, _POPULATION, _GENERATIONS = (9, 7, 5), 40, (60, 80, 90)
+_GRID, _POPULATION, GENERATIONS = (9, 7, 5), 40, (60, 80, 90)
 _SLACK, _NARROWING = 1.0, 0.6  # W, and the share of the generations in which it narrows
 _STEP = np.array([1e-5, 1e-5, np.radians(0.001)])  # finer than a seat can be set: m, m, rad
 _AT_ONCE = 20_000  # turns in memory
@@ -26,11 +26,12 @@ def best_seats(
     shank: Sequence[float] | FloatArray,
     table: WorkTable,
     limits: SeatLimits = SEAT_LIMITS,
+    generations: Sequence[int] = GENERATIONS,
 ) -> tuple[Seats, Scores]:
     """The best seat for each of several riders, with thigh and shank in m; shape (riders,) each.
 
-    The seat as drawn is tried where the limits allow it. Raises AssemblyError for a linkage that cannot turn whoever
-    sits where.
+    The seat as drawn is tried where the limits allow it. generations: of the search on each of the three aims. Raises
+    AssemblyError for a linkage that cannot turn whoever sits where.
     """
     if "coupler" in design.linkage.architecture.bodies and grashof_margin(design)[0] < LEAST_CLEARANCE:
         turning(design)
@@ -45,11 +46,11 @@ def best_seats(
     axes = [np.linspace(*ends, count) for ends, count in zip(limits, _GRID, strict=True)]
     grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
     tried, known = scored(np.broadcast_to(np.vstack([np.zeros((1, 3)), grid]), (len(legs), len(grid) + 1, 3)))
-    for aim, generations in enumerate(_GENERATIONS, 1):
+    for aim, count in enumerate(generations, 1):
         order = np.argsort(losses(known, known, aim, _SLACK), axis=1, kind="stable")
         population, scores = _taken((tried, known), order[:, :_POPULATION])
-        for generation in range(generations):
-            slack = _SLACK * (POWER_EQUAL / _SLACK) ** min(1.0, generation / (_NARROWING * generations))
+        for generation in range(count):
+            slack = _SLACK * (POWER_EQUAL / _SLACK) ** min(1.0, generation / (_NARROWING * count))
             trial, outcome = scored(_mutants(population, losses(scores, known, aim, slack), random))
             tried = np.concatenate([tried, trial], axis=1)
             known = Scores(*(np.concatenate(columns, axis=1) for columns in zip(known, outcome, strict=True)))
