@@ -39,7 +39,8 @@ def draw(
     """Size links and pins of a design, lay them out in layers, and write what a workshop needs.
 
     Into the folder go links/LINK.dxf in full size, the sheet (sheet.dxf, .svg, .pdf), links.csv with every hole, and
-    pin_forces.csv with the force on every pin over a turn. Exit code 1 if anything that moves meets the seat or, where
+    pin_forces.csv and link_moments.csv with the force on every pin and the bending moment along every link over a turn.
+    Exit code 1 if anything that moves meets the seat or, where
     the design file has a table [frame], the wheel or the ground.
 
     Args:

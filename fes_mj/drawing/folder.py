@@ -3,15 +3,17 @@
 from collections.abc import Iterable
 from pathlib import Path
 
+from fes_mj.drawing.mechanism import LINE
 from fes_mj.drawing.part import FIRST, draw_part, extent, notes
 from fes_mj.drawing.pen import Pen
-from fes_mj.drawing.sheet import LINE, pictures, sheet
+from fes_mj.drawing.sheet import pictures, sheet
 from fes_mj.drawing.solid import step_text
-from fes_mj.drawing.tables import links_csv, pin_forces_csv
+from fes_mj.drawing.tables import link_moments_csv, links_csv, pin_forces_csv
 from fes_mj.linkage.plates import Plate
 from fes_mj.statics.sizes import Build
 
-SHEET, TABLES = ("sheet.dxf", "sheet.svg", "sheet.pdf"), ("links.csv", "pin_forces.csv")
+SHEET = ("sheet.dxf", "sheet.svg", "sheet.pdf")
+TABLES = {"links.csv": links_csv, "pin_forces.csv": pin_forces_csv, "link_moments.csv": link_moments_csv}
 
 
 def names(links: Iterable[str], solids: bool = False) -> list[Path]:
@@ -27,7 +29,7 @@ def contents(build: Build, solids: bool = False) -> dict[Path, str | bytes]:
     parts: list[str | bytes] = [link_drawing(build, plate).dxf() for plate in build.plates.values()]
     if solids:
         parts += [step_text(plate) for plate in build.plates.values()]
-    pages: list[str | bytes] = [drawn.dxf(), *pictures(drawn), links_csv(build), pin_forces_csv(build)]
+    pages: list[str | bytes] = [drawn.dxf(), *pictures(drawn), *(table(build) for table in TABLES.values())]
     return dict(zip(names(build.plates, solids), [*parts, *pages], strict=True))
 
 

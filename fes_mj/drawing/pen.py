@@ -28,12 +28,13 @@ LAYERS = {
     "DIMENSIONS": (7, 18, "CONTINUOUS"),
     "TEXT": (7, 18, "CONTINUOUS"),
     "PHANTOM": (9, 18, "CONTINUOUS"),
-    "PATH": (8, 18, "DASHED2"),
+    "PATH": (8, 18, "DASHEDX2"),
     "FRAME": (7, 50, "CONTINUOUS"),
 }
 _DIMENSION = {
     "dimtxt": TEXT, "dimasz": TEXT, "dimexo": 1.0, "dimexe": 1.5, "dimgap": 0.8, "dimtad": 1, "dimtih": 0, "dimtoh": 0,
     "dimlunit": 2, "dimdec": 2, "dimzin": 8, "dimdsep": ord("."), "dimtxsty": "PLAIN", "dimscale": 1.0, "dimtmove": 0,
+    "dimlwd": 18, "dimlwe": 18,
 }  # fmt: skip
 
 

@@ -3,48 +3,25 @@
 import io
 from collections.abc import Sequence
 from importlib.metadata import version
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
-from fes_mj.common.arrays import ComplexArray
 from fes_mj.common.text import printable
 from fes_mj.common.units import RPM
+from fes_mj.drawing.mechanism import FIXED_POINTS, LINE, SCALES, Box, largest_scale, mechanism, ratio
 from fes_mj.drawing.part import FIRST, draw_part, extent, notes
-from fes_mj.drawing.pen import TEXT, Pen, seen
+from fes_mj.drawing.pen import TEXT, Pen
 from fes_mj.linkage.clearance import CLEARANCE, Gap
-from fes_mj.linkage.design import BODIES
-from fes_mj.linkage.kinematics import FULL_TURN
 from fes_mj.linkage.plates import Plate
-from fes_mj.linkage.shapes import back_to_front
 from fes_mj.statics.materials import pin_stock
 from fes_mj.statics.sizes import Build
 
 WIDTH, HEIGHT, BORDER, BINDING = 594.0, 420.0, 10.0, 20.0  # mm: A2, ISO 5457
-SCALES = (1.0, 0.5, 0.2, 0.1, 0.05, 0.02)  # ISO 5455
-LINE = 1.8 * TEXT  # mm from a line of text to the next
 ROOM = FIRST + 6.0  # mm around a link for its dimensions
-_LINKS, _UNDER, _GAP = 336.0, 110.0, 5.0  # mm: where links begin from the left, how high tables reach, between boxes
+_LINKS, _UNDER, _GAP = 344.0, 110.0, 5.0  # mm: where links begin from the left, how high tables reach, between boxes
 _TITLE, _NAMES, _ROW = 180.0, 24.0, 7.0  # mm: width of the title block (ISO 7200), of its names, height of a row
 _LISTED = 6  # clearances
-FIXED_POINTS = {"hip", "rocker_pivot", "crank_centre"}
-
-
-class Box(NamedTuple):
-    """A part of the sheet, mm."""
-
-    left: float
-    bottom: float
-    right: float
-    top: float
-
-    @property
-    def size(self) -> complex:
-        return complex(self.right - self.left, self.top - self.bottom)
-
-    @property
-    def middle(self) -> complex:
-        return complex(self.left + self.right, self.bottom + self.top) / 2
 
 
 def sheet(build: Build) -> Pen:
@@ -55,90 +32,41 @@ def sheet(build: Build) -> Pen:
     side, left = build.stack.side, BINDING + _GAP
     apart = sorted((gap for gap in side.gaps if gap.distance > 0), key=lambda gap: gap.distance)
     gaps = list(dict.fromkeys([*side.hindrances, *apart]))[:_LISTED]
-    _mechanism(pen, build, gaps, Box(left, BORDER + _UNDER, _LINKS - _GAP, top - _GAP))
+    mechanism(pen, build, gaps, Box(left, BORDER + _UNDER, _LINKS - _GAP, top - _GAP))
     _links(pen, build, Box(_LINKS, BORDER + 7 * _ROW, right - _GAP, top - _GAP))
     _lines(pen, _tables(build, gaps), complex(left, BORDER + _UNDER))
     _title(pen, build)
     return pen
 
 
-def ratio(scale: float) -> str:
-    """A scale as drawings name it."""
-    return f"1:{round(1 / scale)}"
-
-
-def _mechanism(pen: Pen, build: Build, gaps: Sequence[Gap], box: Box) -> None:
-    """Rider, links and frame with the leg bent most and stretched most, and the paths of pedal and knee."""
-    points = build.stack.side.motion.points
-    paths = {name: seen(points[name].value) for name in ("pedal", "knee")}
-    reach = np.abs(points["pedal"].value)
-    bent, stretched = int(reach.argmin()), int(reach.argmax())
-    lines = [*_pose(build, stretched, "PHANTOM"), *_pose(build, bent, "OUTLINE")]
-    cloud = np.concatenate([*paths.values(), *(line for line, _ in lines)])
-    low, high = complex(cloud.real.min(), cloud.imag.min()), complex(cloud.real.max(), cloud.imag.max())
-    scale = _largest_scale(high - low, box.size - 2j * LINE)
-    own = pen.moved(box.middle - 1j * LINE - scale * (low + high) / 2, scale)
-    for line, layer in lines:
-        own.line(line, layer, close=True)
-    for path in paths.values():
-        own.line(path, "PATH", close=True)
-    for joint in FIXED_POINTS & points.keys():
-        own.cross(seen(complex(points[joint].value)), 4.0)
-    for number, gap in enumerate(gaps, 1):
-        start, end = map(seen, gap.ends)
-        own.line([start, end], "DIMENSIONS")
-        own.text(str(number), start + (end - start) * number / (1 + len(gaps)) + (1 + 1j) / scale)
-    angles = [f"{np.degrees(FULL_TURN[place]):.1f} deg" for place in (bent, stretched)]
-    pen.text(
-        f"MECHANISM {ratio(scale)}, seen from the rider's right; links thick with the leg bent most (crank at "
-        f"{angles[0]}), thin stretched most ({angles[1]})",
-        complex(box.left, box.top - LINE),
-    )
-    pen.text("broken lines: paths of pedal and knee; numbers: clearances", complex(box.left, box.top - 2 * LINE))
-
-
-def _largest_scale(size: complex, room: complex) -> float:
-    """With which something of this width and height fits, mm."""
-    return next(scale for scale in SCALES if scale * size.real <= room.real and scale * size.imag <= room.imag)
-
-
-def _pose(build: Build, place: int, layer: str) -> list[tuple[ComplexArray, str]]:
-    """Outlines at a place of the turn: leg and seat thin, links in the layer."""
-    motion, lines = build.stack.side.motion, []
-    for bar in back_to_front(build.design):
-        if bar.body in build.plates or bar.part == "frame":
-            continue
-        origin, direction = 0j, 1.0 + 0j
-        if bar.body:
-            origin = complex(np.broadcast_to(motion.points[BODIES[bar.body][0]].value, FULL_TURN.shape)[place])
-            direction = complex(motion.direction(bar.body)[place])
-        lines.append((seen(bar.outline(origin, direction)), "PHANTOM"))
-    for body, plate in build.plates.items():
-        origin = complex(np.broadcast_to(motion.points[BODIES[body][0]].value, FULL_TURN.shape)[place])
-        lines.append((seen(origin + complex(motion.direction(body)[place]) * rounded(plate)), layer))
-    return lines
-
-
-def rounded(plate: Plate) -> ComplexArray:
-    """Points along a plate's outline in its body's frame, m."""
-    arcs = [
-        corner.centre + plate.margin * corner.before * np.exp(1j * np.linspace(0, corner.angle, 24))
-        for corner in plate.corners
-    ]
-    return np.concatenate(arcs)
-
-
 def _links(pen: Pen, build: Build, box: Box) -> None:
-    """Every link below the one before, with its notes, each as large as its share of the room lets it be."""
-    top, share = box.top, 1j * box.size.imag / len(build.plates)
-    for plate in build.plates.values():
+    """Every link below the one before, with its notes."""
+    plates, top = [*build.plates.values()], box.top
+    scales = _scales(plates, box.size)
+    spare = (box.size.imag - sum(map(_height, plates, scales))) / len(plates)
+    for plate, scale in zip(plates, scales, strict=True):
         low, high = extent(plate)
-        room = box.size.real + share - 2 * ROOM * (1 + 1j) - 1j * LINE * (1 + len(plate.holes))
-        scale = _largest_scale(high - low, room)
         below = _lines(pen, notes(build, plate, ratio(scale)), complex(box.left, top))
         corner = complex(box.left + ROOM, below - ROOM - scale * (high - low).imag)
         draw_part(pen.moved(corner - scale * low, scale), plate)
-        top -= share.imag
+        top -= _height(plate, scale) + spare
+
+
+def _height(plate: Plate, scale: float) -> float:
+    """Of a link with its notes and dimensions, mm."""
+    low, high = extent(plate)
+    return scale * float((high - low).imag) + 2 * ROOM + LINE * (1 + len(plate.holes))
+
+
+def _scales(plates: Sequence[Plate], room: complex) -> list[float]:
+    """The largest in which all links fit below each other: the tallest is made smaller as long as they do not."""
+    wide = (extent(plate)[1] - extent(plate)[0] for plate in plates)
+    scales = [largest_scale(size.real + 0j, room - 2 * ROOM) for size in wide]
+    while sum(map(_height, plates, scales)) > room.imag:
+        heights = [*map(_height, plates, scales)]
+        tallest = heights.index(max(heights))
+        scales[tallest] = SCALES[SCALES.index(scales[tallest]) + 1]
+    return scales
 
 
 def _lines(pen: Pen, lines: Sequence[str], at: complex) -> float:
@@ -173,10 +101,10 @@ def _tables(build: Build, gaps: Sequence[Gap]) -> list[str]:
 
 def _title(pen: Pen, build: Build) -> None:
     """The title block, bottom right; without a date."""
-    turn, rider, architecture = build.turn, build.design.rider, build.design.linkage.architecture
+    turn, rider = build.turn, build.design.rider
     rows = {
         "design": printable(build.design.name),
-        "kind": architecture.title,
+        "kind": build.design.linkage.title,
         "power": f"{turn.power_mean:.2f} W in the mean, one leg ({turn.moments.name}), {turn.cadence / RPM:.1f} rpm",
         "rider": f"thigh {1e3 * rider.thigh:g} mm, shank {1e3 * rider.shank:g} mm, {rider.mass:g} kg",
         "material": f"{build.material.name}, links {sum(build.mass.values()):.2f} kg a side; pins {pin_stock().name}",
@@ -203,7 +131,12 @@ def figure(pen: Pen) -> Any:
 
     drawn = Figure(figsize=(WIDTH / 25.4, HEIGHT / 25.4))
     axes = drawn.add_axes((0, 0, 1, 1))
-    look = Configuration(background_policy=BackgroundPolicy.WHITE, color_policy=ColorPolicy.BLACK)
+    look = Configuration(
+        background_policy=BackgroundPolicy.WHITE,
+        color_policy=ColorPolicy.BLACK,
+        lineweight_scaling=72 / 25.4,  # the backend takes mm for points
+        min_lineweight=0.1,
+    )
     backend = MatplotlibBackend(axes, adjust_figure=False)
     Frontend(RenderContext(pen.document), backend, look).draw_layout(pen.document.modelspace())
     axes.set(xlim=(0, WIDTH), ylim=(0, HEIGHT))

@@ -1,4 +1,4 @@
-"""What goes with the drawings as CSV: links with their holes, and the forces on every pin over a turn."""
+"""What goes with the drawings as CSV: links with their holes, forces on every pin and moments in links over a turn."""
 
 import numpy as np
 
@@ -29,4 +29,17 @@ def pin_forces_csv(build: Build) -> str:
         for joint in build.pins:
             columns[f"{joint}_{case}_x_N"] = forces[joint].real
             columns[f"{joint}_{case}_y_N"] = forces[joint].imag
+    return csv_text(columns)
+
+
+def link_moments_csv(build: Build) -> str:
+    """A row a crank angle: of each link the bending moment in its plane beside a hole, N m, on the way to another one.
+
+    Counter-clockwise, on the part up to there, by the part beyond. Between two holes it changes linearly; beside the
+    last one it is 0. Cases as in pin_forces_csv.
+    """
+    columns = {"crank_angle_deg": np.degrees(build.loads.motion.crank_angle)}
+    for body, plate in build.plates.items():
+        for part in build.loads.sections(plate, dict.fromkeys(build.pins, 0.0)):
+            columns[f"{body}_{part.start}_to_{part.end}_{part.case}_Nm"] = part.bending
     return csv_text(columns)

@@ -19,11 +19,15 @@ PEDAL_LOAD = 1500.0  # N; ISO 4210-8 and EN 14766 load pedals and drives with it
 
 
 class Section(NamedTuple):
-    """Of a link beside a hole, on the way from its origin to its end: what the part beyond puts on it over the turn.
+    """Of a link beside the hole of a joint `start`, on the way to `end`: what the part beyond puts on it over the turn.
 
-    pull: N along the arm. bending: N m in the plane, across: out of it. length: m, to the arm's end.
+    case: riding or pushed. pull: N along the arm. bending: N m in the plane, across: out of it. length: m, to the arm's
+    end.
     """
 
+    case: str
+    start: str
+    end: str
     pull: FloatArray
     bending: FloatArray
     across: FloatArray
@@ -60,7 +64,7 @@ class LinkLoads:
         plate's width: less than they are.
         """
         joints, direction = self.motion.design.linkage.architecture.joints, self.motion.direction(plate.body)
-        for case in (self.riding, self.pushed):
+        for name, case in (("riding", self.riding), ("pushed", self.pushed)):
             own = {
                 joint: (1 if joints[joint][1] == plate.body else -1) * case[joint] * np.conj(direction)
                 for joint, _, _ in plate.holes
@@ -73,7 +77,8 @@ class LinkLoads:
                          levers[joint] * np.abs(own[joint]))
                         for joint, place, _ in beyond
                     ), strict=True))  # fmt: skip
-                    yield Section(pull, bending, across, abs(arm[-1].place - start.place))
+                    length = float(abs(arm[-1].place - start.place))
+                    yield Section(name, start.joint, arm[-1].joint, pull, bending, across, length)
 
 
 def pedal_forces(motion: Motion, load: float) -> tuple[FloatArray, dict[str, ComplexArray]]:

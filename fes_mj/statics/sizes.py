@@ -154,10 +154,10 @@ def _width(plate: Plate, loads: LinkLoads, layers: Stack, chosen: Material, safe
     for width in (size for size in plate_stock().width if size >= least):
         net, modulus = thick * (width - hole), thick * (width**3 - hole**3) / (6 * width)
         bears = all(
-            np.max(np.abs(pull) / net + np.abs(bending) / modulus + 6 * across / (net * thick)) * safety
+            np.max(np.abs(part.pull) / net + np.abs(part.bending) / modulus + 6 * part.across / (net * thick)) * safety
             <= chosen.yield_strength
-            and np.max(-pull) * safety <= math.pi**2 * chosen.modulus * width * thick**3 / 12 / length**2
-            for pull, bending, across, length in sections
+            and np.max(-part.pull) * safety <= math.pi**2 * chosen.modulus * width * thick**3 / 12 / part.length**2
+            for part in sections
         )
         if bears:
             return width

@@ -36,6 +36,7 @@ def test_files_and_numbers(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -
     assert {name for name in written if not name.rpartition("/")[2].startswith(".")} == drawings | {
         "links.csv",
         "pin_forces.csv",
+        "link_moments.csv",
     }
     assert run(arguments) == 0  # over its own files
 

@@ -3,6 +3,7 @@
 import csv
 import io
 import math
+import re
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,7 @@ import shapely
 
 import fes_mj
 from fes_mj.drawing.folder import contents
+from fes_mj.drawing.pen import LAYERS
 from fes_mj.linkage.design import Design
 from fes_mj.statics.sizes import Build, build
 
@@ -90,6 +92,27 @@ def test_forces_of_the_table_keep_every_link_in_balance(made: Build, files: dict
             total, moment = total + force, moment + (np.conj(place) * force).imag
         assert np.abs(total).max() < 1e-4  # nine digits of some kN
         assert np.abs(moment).max() < 1e-4
+
+
+def test_moments_of_the_table_are_those_of_the_forces_beyond(made: Build, files: dict[Path, Any]) -> None:
+    """Pushed: the crank bears the pedal's virtual work, a link of three holes what its last pin does on its arm."""
+    moments = list(csv.DictReader(io.StringIO(files[Path("link_moments.csv")])))
+    motion, linkage = made.stack.side.motion, made.design.linkage
+    pedal = motion.points["pedal"]
+    force = 1500 * (pedal.value / np.abs(pedal.value))[::2]
+    (crank,) = (key for key in moments[0] if key.startswith("crank_crank_centre_to_") and key.endswith("_pushed_Nm"))
+    work = (np.conj(force) * pedal.first[::2]).real
+    assert np.array([float(row[crank]) for row in moments]) == pytest.approx(work, abs=1e-4)
+    if linkage.kind == "crt":
+        key = "rocker_rocker_joint_to_pedal_pushed_Nm"
+        arm = (pedal.value - motion.points["rocker_joint"].value)[::2]
+        bending = np.array([float(row[key]) for row in moments])
+        assert bending == pytest.approx((np.conj(arm) * force).imag, abs=1e-4)
+
+
+def test_lines_of_the_pictures_are_as_thick_as_the_layers_say(files: dict[Path, Any]) -> None:
+    widths = {float(width) for width in re.findall(rb"stroke-width: ([\d.]+)", files[Path("sheet.svg")])}
+    assert {round(width * 25.4 / 72, 2) for width in widths} == {width / 100 for _, width, _ in LAYERS.values()}
 
 
 @pytest.mark.long
