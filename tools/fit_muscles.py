@@ -42,7 +42,7 @@ def measured(group: str) -> Measured:
 
 def main() -> None:
     for group in RIDER_GROUPS:
-        posterior = identify(measured(group), np.random.default_rng(SEED), CANDIDATES)
+        posterior = identify(measured(group), np.random.default_rng(SEED), CANDIDATES, group)
         print(f"{group}: {CANDIDATES} candidates are worth {posterior.effective:.0f} independent riders")
         posterior.members(MEMBERS).save(SHIPPED / f"{group}.npz")
 

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
+from fes_mj.cli.muscle_fit import fitted, print_fitted, require_trial
 from fes_mj.cli.options import Flag, Out, PrintOptions, warn_of
 from fes_mj.cli.tables import span, with_error
 from fes_mj.common.console import print_table, verdict
@@ -30,6 +31,7 @@ def moments(
     plot: Path | None = None,
     out: Out | None = None,
     identify: Flag = False,
+    fit_muscles: Flag = False,
 ) -> None:
     """Show what is understood of a file of joint moments, and warn of what looks misread.
 
@@ -39,12 +41,19 @@ def moments(
         out: Write them as plain CSV, a row a degree from top dead centre, and beside it a measurement file (.toml) that
             keeps the tricycle, which a plain CSV does not know.
         identify: Find R1, R2 and the seat's angle from the recorded angles of knee and hip.
+        fit_muscles: Find muscles that may have given these moments, and write them with -o (.npz) for `--drive muscles
+            --muscles`; takes minutes.
     """
+    if fit_muscles:
+        require_trial(file, out)
     path = None if file in GROUPS else Path(file)
     inputs = measured_files(path) if path else []
     require_writable(plot, "the plot", PICTURES, inputs)
-    require_writable(out, "the moments", ".csv", inputs)
-    beside = out.with_suffix(".toml") if out and path else None
+    if fit_muscles:
+        require_writable(out, "the riders", ".npz", inputs)
+    else:
+        require_writable(out, "the moments", ".csv", inputs)
+    beside = out.with_suffix(".toml") if out and path and not fit_muscles else None
     require_replaceable([beside] if beside else [], "the tricycle of the moments", inputs)
     measurement = load_measurement(path) if path else Measurement.of(load_moments(file))
     warn_of(measurement.moments)
@@ -55,16 +64,23 @@ def moments(
         from fes_mj.viewing.moments_plot import moments_figure
 
         write_figure(plot, moments_figure, measurement)
-    if out:
+    riders = fitted(measurement.moments, out, options) if fit_muscles and out else {}
+    if out and not fit_muscles:
         kept = {beside: measurement_toml(measurement.moments, out)} if beside else {}
         write_files({out: moments_csv(measurement.moments), **kept}, unnamed=kept)
     identified = {"identified": [number._asdict() for number in numbers]} if identify else {}
+
+    def tables() -> None:
+        _print(measurement, numbers)
+        if riders and out:
+            print_fitted(riders, out)
+
+    written = {"riders" if riders else "moments": out, "measurement_file": beside}
     options.show(
-        lambda: measurement.summary() | identified,
-        lambda: _print(measurement, numbers),
+        lambda: measurement.summary() | identified | ({"fitted": riders} if riders else {}),
+        tables,
         plot=plot,
-        moments=out,
-        measurement_file=beside,
+        **written,
     )
 
 

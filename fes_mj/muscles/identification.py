@@ -6,12 +6,14 @@ weighed by the marginal likelihood. Riders are proposed where earlier ones weigh
 Cappe et al., J. Comput. Graph. Stat. 13 (2004) 907-929).
 """
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 
 from fes_mj.common.arrays import FloatArray, IntArray
+from fes_mj.common.errors import InputError
 from fes_mj.linkage import kinematics
 from fes_mj.linkage.joints import PerJoint
 from fes_mj.moments.fourier import HARMONICS
@@ -26,14 +28,15 @@ from fes_mj.muscles.residual import Residual
 from fes_mj.muscles.riders import Riders
 from fes_mj.muscles.timing import Windows, responded
 
+DOUBTS = "are signs, units, zero and tricycle as declared, and does nothing but stimulated legs move the crank?"
 WHOLE = -1  # in place of a group: the whole moment, with passive part and residual
-_STRENGTHS = [f"{group}_strength" for group in GROUPS]
+STRENGTHS = [f"{group}_strength" for group in GROUPS]
 _POINTS = 120  # crank angles: against three times as many a power changes by 1e-3 of itself, a tenth of its error
 _TURN = np.arange(_POINTS) * (2 * np.pi / _POINTS)  # from the most bent knee
 _BLOCK = 200  # riders at once
-_STAGES = 5
+STAGES = 5
 _LEAST_EFFECTIVE = 100  # riders by whose spread the next ones are proposed
-_DRAWS = 10  # of the strengths of each
+DRAWS = 10  # of the strengths of each
 _FROM_PRIOR = 0.1  # share of the proposals, so that no weight is large where nobody looked
 
 
@@ -83,11 +86,14 @@ class Candidates:
     covariance: FloatArray
 
     @classmethod
-    def of(cls, riders: Riders, measured: Measured) -> "Candidates":
-        """These riders, on the tricycle of the measurement."""
-        values = riders.values
-        blocks = (riders.taken(slice(start, start + _BLOCK)) for start in range(0, len(riders), _BLOCK))
-        by_strength, passive = (np.concatenate(c) for c in zip(*(_seen(b, measured) for b in blocks), strict=True))
+    def of(cls, riders: Riders, measured: Measured, advance: Callable[[int], None] = lambda _: None) -> "Candidates":
+        """These riders, on the tricycle of the measurement; advance: called with the number of riders just seen."""
+        values, parts = riders.values, []
+        for start in range(0, len(riders), _BLOCK):
+            block = riders.taken(slice(start, start + _BLOCK))
+            parts.append(_seen(block, measured))
+            advance(len(block))
+        by_strength, passive = (np.concatenate(part) for part in zip(*parts, strict=True))
         explained = values["passive_included"][:, None] * passive
         residual = measured.residual
         explained += values["residual_loss_W"][:, None] * residual.loss
@@ -96,7 +102,7 @@ class Candidates:
 
     def simulated(self, row: int, random: np.random.Generator) -> FloatArray:
         """What a measurement of one of the riders gives, with a residual and errors of its own, shape (rows,)."""
-        strength = np.array([self.riders.values[name][row] for name in _STRENGTHS])
+        strength = np.array([self.riders.values[name][row] for name in STRENGTHS])
         scatter = np.linalg.cholesky(self.covariance[row]) @ random.standard_normal(self.explained.shape[1])
         return np.asarray(self.by_strength[row] @ strength + self.explained[row] + scatter)
 
@@ -106,7 +112,7 @@ class Candidates:
         scores: standard normal numbers for the strengths, shape (draws, riders, groups). Negative strengths are
         impossible: of the draws the first without counts, and the share of these belongs to the likelihood.
         """
-        mean, deviation = np.array([priors()[name]["normal"] for name in _STRENGTHS]).T
+        mean, deviation = np.array([priors()[name]["normal"] for name in STRENGTHS]).T
         spread = self.by_strength * deviation
         total = self.covariance + spread @ np.swapaxes(spread, 1, 2)
         apart = values - self.explained - self.by_strength @ mean
@@ -119,17 +125,15 @@ class Candidates:
         strengths = mean + change
         fits = apart - np.einsum("nrg,ng->nr", self.by_strength, change)
         joint = _log_density(fits, self.covariance) - np.sum((change / deviation) ** 2, axis=1) / 2
-        known = dict(self.riders.values) | dict(zip(_STRENGTHS, strengths.T, strict=True))
+        known = dict(self.riders.values) | dict(zip(STRENGTHS, strengths.T, strict=True))
         with np.errstate(divide="ignore"):
             share = np.log(possible.mean(axis=0))
-        return Riders("posterior", known, joint), _log_density(apart, total) + share
+        return replace(self.riders, values=known, likelihood=joint), _log_density(apart, total) + share
 
 
 def _seen(riders: Riders, measured: Measured) -> tuple[FloatArray, FloatArray]:
     """Candidates.by_strength of riders, and values by passive moments, shape (riders, rows)."""
-    unit = Riders(
-        riders.name, dict(riders.values) | {name: np.ones(len(riders)) for name in _STRENGTHS}, riders.likelihood
-    )
+    unit = replace(riders, values=dict(riders.values) | {name: np.ones(len(riders)) for name in STRENGTHS})
     reference, weights = measured.reference, measured.weights
     cadence = np.full((1, 1), reference.cadence)
     motion = kinematics.solve(reference.design, _TURN + reference.top_dead_centre)
@@ -150,10 +154,14 @@ def _log_density(apart: FloatArray, covariance: FloatArray) -> FloatArray:
 
 
 class Posterior(NamedTuple):
-    """Weighed riders; weights: shape (riders,)."""
+    """Weighed riders; log_weights: up to a constant, -inf for one that cannot be, shape (riders,)."""
 
     riders: Riders
-    weights: FloatArray
+    log_weights: FloatArray
+
+    @property
+    def weights(self) -> FloatArray:
+        return np.asarray(np.exp(self.log_weights - self.log_weights.max()))
 
     @property
     def effective(self) -> float:
@@ -162,31 +170,47 @@ class Posterior(NamedTuple):
 
     def members(self, count: int) -> Riders:
         """So many riders, each as likely as any other: at even steps of the weights' sum."""
-        steps = (np.arange(count) + 0.5) / count
-        return self.riders.taken(np.searchsorted(np.cumsum(self.weights) / self.weights.sum(), steps))
+        steps, weights = (np.arange(count) + 0.5) / count, self.weights
+        return self.riders.taken(np.searchsorted(np.cumsum(weights) / weights.sum(), steps))
+
+    def flattened(self, enough: float = _LEAST_EFFECTIVE) -> "Posterior":
+        """The same with weights so flat that enough riders count to say where to look, or half of those that can be."""
+        flat, enough = self, min(enough, np.isfinite(self.log_weights).sum() / 2)
+        power = 1.0
+        while flat.effective < enough:
+            power *= 0.8
+            flat = self._replace(log_weights=power * (self.log_weights - self.log_weights.max()))
+        return flat
 
 
-def identify(measured: Measured, random: np.random.Generator, count: int) -> Posterior:
-    """What is known of a rider after a measurement: so many candidates at each of a few stages, the last weighed."""
-    quantities = [name for name in priors() if name not in _STRENGTHS]
+def identify(
+    measured: Measured,
+    random: np.random.Generator,
+    count: int,
+    name: str = "",
+    advance: Callable[[int], None] = lambda _: None,
+) -> Posterior:
+    """What is known of a rider after a measurement: so many candidates at each of STAGES, the last weighed.
+
+    name: of the riders; advance: called with the number of candidates just seen.
+    """
+    quantities = [name for name in priors() if name not in STRENGTHS]
     centre, spread = np.zeros(len(quantities)), np.eye(len(quantities))
-    for stage in range(_STAGES):
+    for stage in range(STAGES):
         own = random.standard_normal((count, len(quantities)))
         there = centre + own @ np.linalg.cholesky(spread).T
         scores = np.where(random.random((count, 1)) < _FROM_PRIOR, own, there) if stage else own
         values = {name: quantile(name, column) for name, column in zip(quantities, scores.T, strict=True)}
-        unit = {name: np.ones(count) for name in _STRENGTHS}
-        candidates = Candidates.of(Riders("candidates", unit | values, np.zeros(count)), measured)
-        numbers = random.standard_normal((_DRAWS, count, len(GROUPS)))
+        unit = {name: np.ones(count) for name in STRENGTHS}
+        candidates = Candidates.of(Riders(name, unit | values, np.zeros(count), measured.reference), measured, advance)
+        numbers = random.standard_normal((DRAWS, count, len(GROUPS)))
         riders, likelihood = candidates.posterior(measured.values, numbers)
         # a proposal's density per that of the prior
         ratio = np.exp(_log_density(scores - centre, spread) + np.sum(scores**2, axis=1) / 2)
         log_weight = likelihood - np.log(_FROM_PRIOR + (1 - _FROM_PRIOR) * ratio)
-        log_weight -= log_weight.max()
-        power = 1.0
-        enough = min(_LEAST_EFFECTIVE, np.isfinite(log_weight).sum() / 2)
-        while (posterior := Posterior(riders, np.exp(power * log_weight))).effective < enough:
-            power *= 0.8  # flatter weights, until enough riders say where to look
-        centre = np.average(scores, axis=0, weights=posterior.weights)
-        spread = np.cov(scores.T, aweights=posterior.weights)
-    return Posterior(riders, np.exp(log_weight))
+        if np.isfinite(log_weight).sum() < 2 * len(quantities):
+            raise InputError(f"{name}: no muscles that pull can have given these moments: {DOUBTS}")
+        posterior = Posterior(riders, log_weight)
+        weights = posterior.flattened().weights
+        centre, spread = np.average(scores, axis=0, weights=weights), np.cov(scores.T, aweights=weights)
+    return posterior

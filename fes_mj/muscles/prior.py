@@ -44,3 +44,20 @@ def quantile(name: str, scores: FloatArray) -> FloatArray:
     low, high = np.log(row["log-even"]) if "log-even" in row else row["even"]
     values = low + (high - low) * part
     return np.asarray(np.exp(values) if "log-even" in row else values)
+
+
+def score(name: str, values: FloatArray) -> FloatArray:
+    """The inverse of `quantile`; of one of two values, the middle of its half."""
+    from scipy.special import ndtr, ndtri
+
+    row = priors()[name]
+    if "either" in row:
+        part = np.where(values == row["either"][0], 0.25, 0.75)
+    elif "normal" in row:
+        mean, deviation = row["normal"]
+        negative = ndtr(-mean / deviation)
+        part = (ndtr((values - mean) / deviation) - negative) / (1 - negative)
+    else:
+        (low, high), at = (np.log(row["log-even"]), np.log(values)) if "log-even" in row else (row["even"], values)
+        part = (at - low) / (high - low)
+    return np.asarray(ndtri(part))

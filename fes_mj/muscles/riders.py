@@ -1,7 +1,7 @@
 """What is known of a rider's muscles: an ensemble, a member of which is a rider who may have been the one measured."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -11,10 +11,13 @@ from fes_mj.common.arrays import FloatArray
 from fes_mj.common.errors import InputError
 from fes_mj.common.reading import DATA
 from fes_mj.common.writing import replacing
+from fes_mj.linkage.variables import component, replaced
+from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE, ReferenceTricycle
 from fes_mj.muscles.anatomy import GROUPS, Anatomy
 from fes_mj.muscles.prior import priors
 
 SHIPPED = DATA / "muscles"
+_TRICYCLE = ("R1x", "R1y", "R2", "R6", "seat_angle", "thigh", "shank", "mass")  # and the cadence, rad/s
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,11 +25,13 @@ class Riders:
     """Riders by what is not known of them, each quantity of shape (members,), in the unit of data/muscles/priors.toml.
 
     likelihood: logarithm of the density of the member and of what was measured, up to a constant, shape (members,).
+    measured_on: the tricycle of the measurement, from which its windows and moments are taken elsewhere.
     """
 
     name: str
     values: Mapping[str, FloatArray]
     likelihood: FloatArray
+    measured_on: ReferenceTricycle = PAPER_TRICYCLE
 
     def __len__(self) -> int:
         return len(self.likelihood)
@@ -38,7 +43,7 @@ class Riders:
     def taken(self, rows: Any) -> "Riders":
         """The members at `rows`, an index array, a mask or a slice."""
         values = {quantity: column[rows] for quantity, column in self.values.items()}
-        return Riders(self.name, values, self.likelihood[rows])
+        return replace(self, values=values, likelihood=self.likelihood[rows])
 
     @property
     def most_probable(self) -> "Riders":
@@ -67,9 +72,13 @@ class Riders:
         return np.stack([np.stack([self.values[f"{group}_{end}"] for end in ends], axis=-1) for group in GROUPS])
 
     def save(self, path: Path) -> None:
-        """Write all members to an .npz file."""
+        """Write all members, and the tricycle of the measurement, to an .npz file."""
+        design, cadence = self.measured_on.design, self.measured_on.cadence
+        tricycle = np.array([*(component(design, name) for name in _TRICYCLE), cadence])
         with replacing(path) as temporary:
-            np.savez_compressed(temporary, allow_pickle=False, likelihood=self.likelihood, **self.values)
+            np.savez_compressed(
+                temporary, allow_pickle=False, likelihood=self.likelihood, measured_on=tricycle, **self.values
+            )
 
 
 def load_riders(source: str | Path) -> Riders:
@@ -81,7 +90,10 @@ def load_riders(source: str | Path) -> Riders:
     path = shipped if shipped.is_file() else Path(source)
     try:
         with np.load(path, allow_pickle=False) as stored:
-            columns = {name: np.asarray(stored[name], float) for name in ("likelihood", *priors())}
+            columns = {name: np.asarray(stored[name], float) for name in ("likelihood", "measured_on", *priors())}
     except (OSError, ValueError, KeyError, EOFError) as error:
         raise InputError(f"{path}: no ensemble of riders: {error}") from None
-    return Riders(path.stem, {name: columns[name] for name in priors()}, columns["likelihood"])
+    *numbers, cadence = map(float, columns["measured_on"])
+    design = replaced(PAPER_TRICYCLE.design, dict(zip(_TRICYCLE, numbers, strict=True)))
+    measured_on = PAPER_TRICYCLE if shipped == path else ReferenceTricycle(design, cadence)
+    return Riders(path.stem, {name: columns[name] for name in priors()}, columns["likelihood"], measured_on)

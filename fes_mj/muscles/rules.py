@@ -17,7 +17,6 @@ from fes_mj.linkage.design import Design
 from fes_mj.linkage.joints import PerJoint
 from fes_mj.linkage.kinematics import Motion
 from fes_mj.linkage.turning import turning
-from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE as _TRIAL
 from fes_mj.muscles.activation import trapezium
 from fes_mj.muscles.anatomy import GROUPS, anatomy
 from fes_mj.muscles.by_angle import moments_by_angle
@@ -55,7 +54,7 @@ class Stimulated:
 
 
 def stimulated(rule: str, riders: Riders, design: Design, cadence: float, duty: float = DUTY) -> Stimulated:
-    """Riders, measured on the paper's tricycle, on a design under one of RULES.
+    """Riders on a design under one of RULES.
 
     cadence: rad/s. duty: as for best_windows, of the best rule alone.
     Raises InputError for joints beyond the range of the muscles' lengths, AssemblyError if the linkage does not turn.
@@ -64,9 +63,10 @@ def stimulated(rule: str, riders: Riders, design: Design, cadence: float, duty: 
     motion = kinematics.solve(design, ANGLES)
     anatomy().require_range(design.name, Flexion.along(motion, np.radians(riders["hip_offset_deg"])))
     if rule == BY_ANGLE:
-        there = muscle_turn(riders, _TRIAL.design, _TRIAL.cadence, trial_windows(riders, _TRIAL.design))
+        trial = riders.measured_on
+        there = muscle_turn(riders, trial.design, trial.cadence, trial_windows(riders, trial.design))
         measured = there.moment.map(lambda moment: moment[:, 0])
-        return Stimulated(riders, motion, cadence, moments_by_angle(measured, motion, _TRIAL))
+        return Stimulated(riders, motion, cadence, moments_by_angle(measured, motion, trial))
     windows = None
     if rule == BEST:
         turn, windows = best_turn(riders, design, cadence, duty)
@@ -87,9 +87,9 @@ def trial_windows(riders: Riders, design: Design) -> Windows:
 
 def _by_joint(riders: Riders, design: Design, cadence: float) -> FloatArray:
     """Stimulation of each group by the joint that leads it, delayed, shape (groups, members, 1, angles)."""
-    motion = kinematics.solve(design, ANGLES - cadence * riders["delay_s"][:, 0])
+    trial, motion = riders.measured_on, kinematics.solve(design, ANGLES - cadence * riders["delay_s"][:, 0])
     angle, rate = motion.joint_angle, motion.joint_rate
-    source = PerJoint.of(lambda joint: _TRIAL.source_angle(joint, angle[joint], rate[joint]))
+    source = PerJoint.of(lambda joint: trial.source_angle(joint, angle[joint], rate[joint]))
     on, width = np.radians(np.moveaxis(riders.windows(), -1, 0))[..., None]
     there = np.stack([source[_LEADING[group]] for group in GROUPS])
-    return trapezium(there - on, width, _TRIAL.cadence * ramp())[:, :, None]
+    return trapezium(there - on, width, trial.cadence * ramp())[:, :, None]

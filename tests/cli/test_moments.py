@@ -134,3 +134,47 @@ def test_two_files_are_the_two_legs(capsys: pytest.CaptureFixture[str], tmp_path
     code, out, _ = result(capsys, "simulate", "d1", "--legs", "2", *pair)
     assert code == 0
     assert "quasi-static, right" in out
+
+
+def test_muscles_of_a_trial_drive_a_design(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """From the trial to static, with as few riders as make a file."""
+    monkeypatch.setattr("fes_mj.cli.muscle_fit._CANDIDATES", 200)
+    monkeypatch.setattr("fes_mj.cli.muscle_fit._STEPS", 1)
+    riders = tmp_path / "rider.npz"
+    code, content = answer(capsys, "moments", str(TRIAL), "--fit-muscles", "-o", str(riders))
+    assert code == 0
+    assert names(tmp_path) == {"rider.npz"}
+    fitted = content["fitted"]
+    assert fitted["members"] == 200
+    assert 0.8 < fitted["explained_share"] <= 1
+    assert {row["identified"] for row in fitted["muscles"]} == {True, False}
+    assert content["riders"] == 1
+    _, out, _ = result(capsys, "moments", str(TRIAL), "--fit-muscles", "-o", str(riders))
+    assert "not identified" in out
+    assert f"--muscles {riders}" in out
+    for timing in ("best", "by-angle"):
+        code, solved = answer(
+            capsys, "static", "trt", "--drive", "muscles", "--muscles", str(riders), "--timing", timing
+        )
+        assert (code, solved["group"]) == (0, "rider")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("p1p2", "--fit-muscles", "-o", "{folder}/r.npz"), "--drive muscles --group p1p2"),
+        ((str(TRIAL), "--fit-muscles"), "--fit-muscles -o RIDER.npz"),
+        ((str(TRIAL), "--fit-muscles", "-o", "{folder}/r.csv"), "must end in .npz"),
+        (("{own}", "--fit-muscles", "-o", "{folder}/r.npz"), "a single turn"),
+    ],
+)
+def test_what_muscles_cannot_be_fitted_to(
+    arguments: tuple[str, ...], said: str, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    (own := tmp_path / "own.csv").write_text(",".join(COLUMNS) + "\n0,1,2\n90,20,-3\n200,-5,4\n")
+    code, out, err = result(capsys, "moments", *(part.format(folder=tmp_path, own=own) for part in arguments))
+    assert (code, out) == (2, "")
+    assert said in err
+    assert names(tmp_path) == {"own.csv"}

@@ -58,7 +58,7 @@ def test_strengths_are_those_of_gaussian_conditioning(riders):
 
 
 def test_members_come_as_often_as_they_weigh(riders):
-    posterior = Posterior(riders, np.array([0, 0, 3, 0, 0, 1.0, 0, 0]))
+    posterior = Posterior(riders, np.log([1e-300, 1e-300, 3, 1e-300, 1e-300, 1, 1e-300, 1e-300]))
     assert sorted(posterior.members(8).likelihood) == [2.0] * 6 + [5.0] * 2
     assert posterior.effective == pytest.approx(1.6)
 
