@@ -11,16 +11,10 @@ from fes_mj.common.console import print_table, verdict
 from fes_mj.common.errors import require_extra
 from fes_mj.common.units import RPM
 from fes_mj.common.writing import PICTURES, require_replaceable, require_writable, write_files
-from fes_mj.moments.files import (
-    Measurement,
-    load_measurement,
-    load_moments,
-    measured_files,
-    measurement_toml,
-    moments_csv,
-)
+from fes_mj.moments.files import load_moments, measurement_toml, moments_csv
 from fes_mj.moments.identification import Identified, identify as identify_tricycle
 from fes_mj.moments.joint_moments import GROUPS, JointMoments
+from fes_mj.moments.measurement import Measurement, load_measurement, measured_files
 
 
 def moments(

@@ -15,7 +15,7 @@ from fes_mj.common.units import RPM
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.design_file import load_design
 from fes_mj.linkage.variables import VARIABLES, crank_speed
-from fes_mj.moments.files import load_moments, measured_files
+from fes_mj.moments.files import load_moments
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.torque_velocity import load_torque_velocity
 from fes_mj.statics.friction import Bearings
@@ -90,7 +90,11 @@ class MomentsOptions:
 
     def inputs(self, *designs: str) -> list[Path]:
         """The files that a command with these options and designs reads, which none of its outputs may replace."""
-        return [*map(Path, designs), *(file for path in self.moments or () for file in measured_files(path))]
+        if not self.moments:
+            return [*map(Path, designs)]
+        from fes_mj.moments.measurement import measured_files  # much to read for those who have none
+
+        return [*map(Path, designs), *(file for path in self.moments for file in measured_files(path))]
 
 
 @Parameter(name="*")

@@ -10,8 +10,9 @@ from typing import Any, TypeVar
 
 from fes_mj.common.errors import InputError
 from fes_mj.common.reading import Section, is_text
-from fes_mj.moments.files import load_moments, measured_files
+from fes_mj.moments.files import load_moments
 from fes_mj.moments.joint_moments import JointMoments
+from fes_mj.moments.measurement import measured_files
 
 Loaded = TypeVar("Loaded")
 MOST, LONGEST = 32, 12 * 3600.0  # files of all pages that are kept, and s after which one that nobody uses is forgotten

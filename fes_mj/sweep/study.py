@@ -15,8 +15,9 @@ from fes_mj.common.reading import Section, is_number, read_toml
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.design_file import load_design
 from fes_mj.linkage.variables import COMPONENTS
-from fes_mj.moments.files import load_moments, measured_files
+from fes_mj.moments.files import load_moments
 from fes_mj.moments.joint_moments import GROUPS, JointMoments
+from fes_mj.moments.measurement import measured_files
 from fes_mj.simulation.time_step import LONGEST_TIMESTEP
 
 ANALYSES = ("static", "dynamic")

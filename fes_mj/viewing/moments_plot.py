@@ -8,8 +8,8 @@ from fes_mj.common.arrays import FloatArray
 from fes_mj.common.style import COLOURS, FAINT, literal
 from fes_mj.linkage.joints import JOINTS
 from fes_mj.linkage.kinematics import solve
-from fes_mj.moments.files import Measurement
 from fes_mj.moments.fourier import WIDEST_GAP, fourier, gaps
+from fes_mj.moments.measurement import Measurement
 from fes_mj.moments.recorded_angles import recorded_curve
 from fes_mj.moments.torque_map import torque_map
 

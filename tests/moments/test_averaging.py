@@ -10,7 +10,7 @@ from scipy import stats
 from fes_mj.common.writing import csv_text
 from fes_mj.linkage.variables import component, replaced
 from fes_mj.moments.averaging import CADENCE_ERROR, DECLARED_ERRORS, spikes
-from fes_mj.moments.files import Measurement, load_measurement
+from fes_mj.moments.measurement import Measurement, load_measurement
 from tests.moments.made_up import MEASURED_ON, moments
 
 DEGREES = np.arange(0, 360, 4.0)

@@ -16,18 +16,10 @@ from fes_mj.linkage import kinematics
 from fes_mj.linkage.design_file import DESIGNS, load_design
 from fes_mj.linkage.joints import JOINTS
 from fes_mj.moments.averaging import coefficients, mean_of, weights_on
-from fes_mj.moments.files import (
-    Measurement,
-    load_measurement,
-    load_moments,
-    measured_files,
-    moments_csv,
-    moments_of,
-    sampled_coefficients,
-    sampled_moments,
-)
+from fes_mj.moments.files import load_moments, moments_csv, moments_of, sampled_coefficients, sampled_moments
 from fes_mj.moments.fourier import fourier
 from fes_mj.moments.joint_moments import GROUPS, JointMoments
+from fes_mj.moments.measurement import Measurement, load_measurement, measured_files
 from fes_mj.moments.measurement_file import Description
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE, ReferenceTricycle
 from fes_mj.simulation.bench import simulate

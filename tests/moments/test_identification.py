@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from fes_mj.common.errors import InputError
-from fes_mj.moments.files import load_measurement
 from fes_mj.moments.identification import identify
+from fes_mj.moments.measurement import load_measurement
 from tests.moments.made_up import R1, R2, SEAT, Trial, measurement
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from fes_mj.common.errors import InputError
-from fes_mj.moments.files import load_measurement
+from fes_mj.moments.measurement import load_measurement
 from tests.moments.made_up import MEASURED_ON, R1, SIGNS, Trial, changed, measurement, work
 
 PLAIN = Trial()

@@ -7,7 +7,7 @@ import pytest
 
 from fes_mj.common.errors import InputError
 from fes_mj.common.writing import csv_text
-from fes_mj.moments.files import Measurement, load_measurement
+from fes_mj.moments.measurement import Measurement, load_measurement
 from tests.moments.made_up import MEASURED_ON, Trial, work
 
 TRIAL = Trial(convention="winter", turns=4.3, rate=100)
