@@ -13,6 +13,7 @@ from fes_mj.cli.tables import heading
 from fes_mj.common.console import conclude, print_table, say
 from fes_mj.common.errors import InputError, require_extra
 from fes_mj.common.writing import require_folder, require_replaceable, write_results
+from fes_mj.linkage.clearance import NEAR
 from fes_mj.linkage.plates import hole_places
 from fes_mj.statics.turn import QuasiStatic, quasi_static
 
@@ -20,8 +21,6 @@ if TYPE_CHECKING:
     from fes_mj.statics.sizes import Build
 
 _LOAD, _PRINT = LoadOptions(), PrintOptions()
-POINTS = 720  # crank angles at which forces are looked at
-SHOWN = 0.1  # m: clearances up to this are printed
 
 
 def draw(
@@ -57,13 +56,13 @@ def draw(
     require_folder(out if out.exists() else out.parent, "the drawings")
     from fes_mj.drawing import folder
     from fes_mj.statics import making
-    from fes_mj.statics.sizes import build
+    from fes_mj.statics.sizes import FORCE_POINTS, build
 
     if rounded:
         loaded = making.rounded(loaded)
     paths = {out / name: name for name in folder.names(hole_places(loaded), step)}
     require_replaceable((path for path in paths if path.parent.exists()), "the drawings", load.inputs(design))
-    made = build(quasi_static(loaded, moments, cadence, POINTS), material, safety)
+    made = build(quasi_static(loaded, moments, cadence, FORCE_POINTS), material, safety)
     files = folder.contents(made, step)
     write_results({path: files[name] for path, name in paths.items()})
     options.show(lambda: _content(made) | {"files": [str(path) for path in paths]}, lambda: _print(made), folder=out)
@@ -123,10 +122,8 @@ def _print(made: Build) -> None:
         for joint, diameter in made.pins.items()
     ]
     print_table("Pins", ("joint", "diameter, mm", "riding, N", "pedal load, N"), pins)
-    gaps = [(gap.pair, f"{1e3 * gap.distance:.1f}", f"{np.degrees(gap.crank_angle):.0f}")
-            for gap in sorted(side.gaps, key=lambda gap: gap.distance)
-        if gap.distance < SHOWN]  # fmt: skip
-    head = f"Clearances over the turn below {1e3 * SHOWN:g} mm; negative: passing beside each other"
+    gaps = [(gap.pair, f"{1e3 * gap.distance:.1f}", f"{np.degrees(gap.crank_angle):.0f}") for gap in side.near]
+    head = f"Clearances over the turn below {1e3 * NEAR:g} mm; negative: passing beside each other"
     print_table(head, ("pair", "least, mm", "at crank deg"), gaps)
     _print_making(made)
     if missing := dict.fromkeys(part for _, part in side.unknown):

@@ -10,6 +10,7 @@ from fes_mj.common.errors import InputError
 from fes_mj.common.reading import Section, is_number, is_text
 from fes_mj.common.style import COLOURS, MOMENTS
 from fes_mj.explore.dimensions import content_of, design_of, dimensions, of_kind
+from fes_mj.explore.making import making
 from fes_mj.explore.pose import plane
 from fes_mj.explore.runs import RUNS
 from fes_mj.explore.turn import turn
@@ -41,7 +42,17 @@ class Answers:
         self.design, self.chosen = design, moments.name
         self.shared = {group: load_moments(group) for group in GROUPS} | {moments.name: moments}
         self.uploads = Uploads()
-        questions = (self.start, self.turn, self.change, self.save, self.model, self.open_design, self.open_moments)
+        self.read: Callable[..., Any] = read_upload  # a server does it elsewhere
+        questions = (
+            self.start,
+            self.turn,
+            self.making,
+            self.change,
+            self.save,
+            self.model,
+            self.open_design,
+            self.open_moments,
+        )
         self.by_name: dict[str, Callable[[Section], Answer]] = {
             question.__name__.replace("_", "-"): question for question in questions
         }
@@ -63,6 +74,11 @@ class Answers:
     def turn(self, question: Section) -> Answer:
         """Motion, curves and numbers of a design under all moments that the page knows."""
         return turn(_design(question), self._moments(question), _legs(question))
+
+    def making(self, question: Section) -> Answer:
+        """Whether a design can be laid out and what comes near to what, sized for its turn under "moments"."""
+        known = self._moments(question)
+        return making(_design(question), known[question.choice("moments", known)])
 
     def change(self, question: Section) -> Answer:
         """A design of another "kind" or "branch", or with the rider of a "percentile" of a "sex"; as it is without."""
@@ -88,11 +104,11 @@ class Answers:
 
     def open_design(self, question: Section) -> Answer:
         """A design file's design."""
-        return {"design": content_of(read_upload(question, load_design))}
+        return {"design": content_of(self.read(question, load_design))}
 
     def open_moments(self, question: Section) -> Answer:
         """Take a file of joint moments, with those that it names, among the ones that the page knows."""
-        moments = read_upload(question, moments_of_bundle)
+        moments = self.read(question, moments_of_bundle)
         name = self.uploads.add(_page(question), moments, self.shared)
         warnings = [misreading.text for misreading in moments.misreadings]
         return {"name": name, "moments": [*self._moments(question)], "warnings": warnings}

@@ -12,8 +12,10 @@ import webbrowser
 from collections.abc import AsyncIterator, Callable
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any
 
 import anyio
+import anyio.from_thread
 import anyio.to_process
 import anyio.to_thread
 import h11
@@ -32,9 +34,12 @@ from fes_mj.common.console import complain, say
 from fes_mj.common.errors import InputError, MissingPartError, UnstableError
 from fes_mj.explore.answers import Answer, Answers, as_question
 from fes_mj.explore.runs import RUNS, progress
+from fes_mj.explore.uploads import read_upload
 
 PATIENCE = 10  # s, for the head of a request, then for its body, then for the next one on the same connection
+READING = 60  # s, for a file
 LARGEST_QUESTION = 16 * 2**20  # bytes: more than ten minutes of a trial as OpenSim writes it
+LONGEST_SENTENCE = 1000  # characters of a refusal, which may show what was sent
 CONNECTIONS = 200  # at a time
 TICK = 0.5  # s between two looks at how far a run has come
 HEADERS = {
@@ -55,6 +60,7 @@ def application(answers: Answers, token: str, hosts: set[str] | None) -> Starlet
     hosts: the names, in lower case, under which the page is reached; None for any. Runs answer line by line: objects
     with "progress", then the answer or an object with "error".
     """
+    answers.read = _read
 
     async def ask(request: Request) -> Response:
         here = hosts is None or request.url.hostname in hosts
@@ -78,6 +84,19 @@ def application(answers: Answers, token: str, hosts: set[str] | None) -> Starlet
         middleware=[Middleware(RequestBodyLimitMiddleware, max_body_size=LARGEST_QUESTION)],
         exception_handlers=dict.fromkeys((HTTPException, *EXPECTED, Exception), _refuse),
     )
+
+
+def _read(*upload: Any) -> Any:
+    """As uploads.read_upload, in a process of its own that may take READING s: for the threads of questions."""
+
+    async def apart() -> Any:
+        with anyio.fail_after(READING):
+            return await anyio.to_process.run_sync(read_upload, *upload, cancellable=True)
+
+    try:
+        return anyio.from_thread.run(apart)
+    except TimeoutError:
+        raise InputError(f"the file could not be read within {READING} s; leave out what is not needed of it") from None
 
 
 async def _lines(run: Callable[[Path], Answer]) -> AsyncIterator[bytes]:
@@ -108,7 +127,8 @@ def _refusal(error: Exception) -> tuple[int, str]:
     if isinstance(error, HTTPException):
         return error.status_code, error.detail
     if isinstance(error, EXPECTED):
-        return 400, str(error)
+        sentence, most = str(error), LONGEST_SENTENCE // 2
+        return 400, sentence if len(sentence) <= 2 * most else f"{sentence[:most]} [...] {sentence[-most:]}"
     return 500, f"fes_mj failed at this ({type(error).__name__}: {error}); with --debug its terminal says where"
 
 

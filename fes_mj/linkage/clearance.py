@@ -19,6 +19,7 @@ from fes_mj.linkage.plates import Plate
 from fes_mj.linkage.shapes import bars
 
 CLEARANCE = 0.005  # m, wanted between what passes each other
+NEAR = 0.1  # m: gaps up to this are shown
 WASHER = 0.001  # m between two layers
 FAR = 10.0  # m: farther than anything reaches
 # Links and legs pass beside the tube and the chainring, which are in the middle, and feet beside the wheel.
@@ -152,6 +153,11 @@ class Side:
     def gaps(self) -> tuple[Gap, ...]:
         """Of all pairs."""
         return tuple(self.gap(*pair) for pair in self.pairs)
+
+    @property
+    def near(self) -> list[Gap]:
+        """Those below NEAR, the nearest first."""
+        return sorted((gap for gap in self.gaps if gap.distance < NEAR), key=lambda gap: gap.distance)
 
     @property
     def unknown(self) -> list[tuple[str, str]]:

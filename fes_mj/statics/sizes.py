@@ -21,6 +21,7 @@ from fes_mj.statics.materials import Material, material, pin_stock, plate_stock
 from fes_mj.statics.turn import QuasiStatic
 
 SAFETY = 2.0  # against yielding and buckling
+FORCE_POINTS = 720  # crank angles at which forces are looked at
 BOUGHT = "pedal"  # the joint whose pin and bearing come with what is screwed in
 PEDAL_HOLE = 0.0142875  # m, 9/16 inch: every pedal's thread
 WALL = 0.004  # m, least between two holes

@@ -222,8 +222,20 @@ def test_a_search_tells_how_far_it_is_and_can_be_cancelled(page: Page) -> None:
     page.set("R6", 11)  # meanwhile
     page.page.click("#cancel")
     page.page.wait_for_selector("#verdict .bad")
-    assert page.page.inner_text("#verdict p") == "Cancelled."
+    assert page.page.inner_text("#verdict p") == "Earlier, of d1: Cancelled."
     assert page.page.locator("[data-run]:enabled").count() == 4
+
+
+def test_clearances_and_layers(page: Page) -> None:
+    page.until(lambda: page.page.inner_text("#making .verdict") == "feet 186 mm apart")
+    page.page.click("#making summary")
+    assert page.page.inner_text("#making .layers") == "Layer 1: crank, rocker. Layer 2: coupler."
+    page.page.click("text=105°")  # of the coupler at the crank's centre
+    assert page.page.inner_text("#angle-shown") == "105 deg"
+    page.set("R2", 25)  # turns no more
+    assert page.page.is_hidden("#making")
+    page.choose("#design", "r2")
+    page.until(lambda: page.page.inner_text("#making .bad").startswith("no pin in stock bears the "))
 
 
 def test_the_model_is_downloaded(page: Page) -> None:

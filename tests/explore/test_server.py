@@ -97,6 +97,31 @@ def test_too_much(server: Server) -> None:
     assert request(server, "POST", "/start", "", **{"Content-Length": str(2**40)})[0] == 413
 
 
+def test_a_refusal_shows_little_of_much(server: Server) -> None:
+    status, answer = ask(server, "turn", {"legs": "1" * 100_000} | D1)
+    assert status == 400
+    assert len(answer["error"]) < 1100
+    assert answer["error"].startswith("the page: legs is '111")
+    assert answer["error"].endswith("it must be 1 or 2")
+
+
+@pytest.mark.process
+def test_a_file_that_is_never_read_to_its_end(server: Server, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its reader is ended; meanwhile others are answered. Afterwards files are read as ever."""
+    monkeypatch.setattr(server_module, "READING", 5)
+    slow = {"name": "d.toml", "text": "a." * 60_000 + "a = 1"}  # tomllib takes the square of the dots
+    with ThreadPoolExecutor(1) as pool:
+        answer = pool.submit(ask, server, "open-design", slow)
+        assert ask(server, "turn", D1)[0] == 200
+        assert answer.result() == (
+            400,
+            {"error": "the file could not be read within 5 s; leave out what is not needed of it"},
+        )
+    monkeypatch.undo()
+    _, saved = ask(server, "save", D1)
+    assert ask(server, "open-design", saved) == (200, D1)
+
+
 def test_an_answer_that_fails_is_an_answer(server: Server, answers: Answers) -> None:
     answers.by_name["save"] = lambda _: {"a number that JSON has not": float("nan")}
     status, answer = ask(server, "save")

@@ -2,6 +2,7 @@
 
 import { ANGLES, Scene } from "./scene.js";
 import { Plot, legend } from "./plot.js";
+import { Making } from "./making.js";
 import { Runs } from "./runs.js";
 import { ask, download } from "./server.js";
 import { Sliders, edited, within } from "./sliders.js";
@@ -36,6 +37,7 @@ const scene = new Scene($("scene"), start.space);
 const powerPlot = new Plot($("power-plot"), (angle) => hold(angle));
 const jointsPlot = new Plot($("joints-plot"), (angle) => hold(angle));
 const sliders = new Sliders(document.querySelectorAll("[data-owner]"), start.dimensions, changed);
+const making = new Making($("making"), () => copy(asked()), hold);
 const runs = new Runs($("runs"), $("verdict"), asRun, () => JSON.stringify(asked()), take);
 
 // ---- The design in hand. What it was stands in the browser's history, and in the address so that it can be sent.
@@ -142,6 +144,7 @@ async function refresh(dragging = false) {
   }
   busy = false;
   runs.compare();
+  making.ask(Boolean(state.turn?.moments));
   const next = again;
   again = null;
   if (next) refresh(next.dragging);

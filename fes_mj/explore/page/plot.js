@@ -64,7 +64,7 @@ export class Plot {
       parts.push(element("line", { x1: MARGIN.left, x2: right, y1: y(value), y2: y(value), class: value === 0 ? "zero" : "grid" }));
       parts.push(element("text", { x: MARGIN.left - 6, y: y(value) + 4, "text-anchor": "end" }, String(+value.toPrecision(6)).replace("-", "−")));
     }
-    const step = width < 300 ? 120 : 60;
+    const step = width < 340 ? 120 : 60;
     for (let degrees = 0; degrees <= 360; degrees += step) {
       parts.push(element("text", { x: this.x(degrees), y: height - 5, "text-anchor": degrees === 360 ? "end" : "middle" }, `${degrees}°`));
     }

@@ -25,6 +25,7 @@ export class Runs {
     const { name } = question.design; // which may change meanwhile
     const say = (text) => (line.textContent = `${button.textContent}, ${name}: ${text}`);
     this.of = this.inHand();
+    this.earlier.textContent = `Earlier, of ${name}: `;
     this.stop = new AbortController();
     this.running(true);
     say("running…");
@@ -32,15 +33,14 @@ export class Runs {
     try {
       const answer = await ask(button.dataset.run, question, { onProgress: say, signal: this.stop.signal });
       line.className = answer.ok ? "good" : "bad";
-      this.earlier.textContent = `Earlier, of ${name}: `;
-      this.compare();
       line.replaceChildren(this.earlier, answer.verdict);
       if (answer.design) line.append(" ", this.offer(answer.design));
       if (answer.checks) box.append(table(answer.checks));
     } catch (error) {
       line.className = "bad";
-      line.textContent = error.message;
+      line.replaceChildren(this.earlier, error.message);
     }
+    this.compare();
     this.running(false);
   }
 
