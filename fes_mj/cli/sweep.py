@@ -7,12 +7,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
 
+from fes_mj.cli.drive import DriveOptions
 from fes_mj.cli.options import Cadence, Jobs, Out, PrintOptions, warn_of
 from fes_mj.common.console import print_table, progress_bar, say
 from fes_mj.common.errors import InputError, require_extra
 from fes_mj.common.parallel import Workers
 from fes_mj.common.writing import make_folder, require_writable
-from fes_mj.sweep.study import Study, label, load_study
+from fes_mj.sweep.study import Muscles, Study, label, load_study
 
 if TYPE_CHECKING:
     from fes_mj.sweep.sweep import Sweep
@@ -30,6 +31,7 @@ def sweep(
     cluster: str | None = None,
     csv: Path | None = None,
     plot: Path | None = None,
+    drive: DriveOptions = DriveOptions(),
     options: PrintOptions = PrintOptions(),
 ) -> None:
     """Evaluate every point of a study; started again with the same folder, it does only what is missing.
@@ -48,14 +50,16 @@ def sweep(
     workers = Workers(jobs if jobs is not None else os.cpu_count() or 1, cluster)
     if cluster is not None:
         _require_address(cluster)
-    sweep = Sweep(load_study(study, cadence), out)
+    muscles = Muscles(drive.timing, drive.duty, drive.muscles) if drive.drive == "muscles" else None
+    sweep = Sweep(load_study(study, cadence, muscles), out)
     for moments in sweep.study.moments.values():
         warn_of(moments)
     if plot:
         _require_plottable(sweep.study, study)
     make_folder(out, "the results")
-    require_writable(csv, "the rows", ".csv", sweep.study.files)
-    require_writable(plot, "the plot", ".png", sweep.study.files)
+    inputs = [*sweep.study.files, *([drive.muscles] if drive.muscles else [])]
+    require_writable(csv, "the rows", ".csv", inputs)
+    require_writable(plot, "the plot", ".png", inputs)
     summary = _run(sweep, workers, study.stem, options.silent)
     if csv:
         sweep.write_csv(csv)

@@ -5,6 +5,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from fes_mj.common.arrays import FloatArray
 from fes_mj.common.errors import InputError, UnstableError
 from fes_mj.common.units import RPM, turns_per_second
 from fes_mj.linkage.design import Design
@@ -70,7 +71,11 @@ def evaluate(study: Study, chunk: int) -> Columns:
             if rows.size:
                 values = {variable: column[rows] for variable, column in varied.items()}
                 results = _static(design, values, moments, len(rows))
-                if study.characteristics:
+                if study.muscles:
+                    batch = replaced(design, {variable: column[:, None] for variable, column in values.items()})
+                    more = _CHARACTERISTICS if study.characteristics else ()
+                    results |= study.muscles.columns(name, batch, _each(results["cadence_rpm"], rows), more)
+                elif study.characteristics:
                     results |= _characteristics(design, values, moments, results)
                 if study.analysis == "dynamic":
                     results |= _dynamic(design, values, moments, study.timestep, results["why"])
@@ -113,7 +118,7 @@ def _characteristics(design: Design, values: Columns, moments: JointMoments, sta
     """Of the points of a batch that have a power; statics: their quasi-static results."""
     torque, rows = torque_map(moments), np.flatnonzero(statics["why"] == "")
     result = {name: np.full(len(statics["why"]), np.nan) for name in _CHARACTERISTICS}
-    rpm = np.broadcast_to(statics["cadence_rpm"], statics["why"].shape)
+    rpm = _each(statics["cadence_rpm"], statics["why"])
     for start in range(0, len(rows), _AT_ONCE):
         block = rows[start : start + _AT_ONCE]
         motion = solve(replaced(design, {name: column[block, None] for name, column in values.items()}))
@@ -122,6 +127,11 @@ def _characteristics(design: Design, values: Columns, moments: JointMoments, sta
         for name, value in (power_characteristics(power) | motion_characteristics(motion)).items():
             result[name][block] = value
     return result
+
+
+def _each(rpm: NDArray[Any], points: NDArray[Any]) -> FloatArray:
+    """Cadence of every one of the points, where it may be one for all."""
+    return np.broadcast_to(rpm, points.shape)
 
 
 def _reasons(turn: Cycles, rpm: NDArray[Any], count: int) -> NDArray[np.object_]:

@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,11 +18,15 @@ from fes_mj.linkage.variables import COMPONENTS
 from fes_mj.moments.files import load_moments
 from fes_mj.moments.joint_moments import GROUPS, JointMoments
 from fes_mj.moments.measurement import measured_files
+from fes_mj.muscles.riders import load_riders
+from fes_mj.muscles.rules import BEST
+from fes_mj.muscles.timing import DUTY, widths_up_to
 from fes_mj.simulation.time_step import LONGEST_TIMESTEP
+from fes_mj.sweep.stimulated import Stimulation
 
 ANALYSES = ("static", "dynamic")
-# A chunk is a task and a file: about a second of static, a minute of dynamic work.
-DEFAULT_CHUNK = {"static": 20_000, "dynamic": 1000}
+# A chunk is a task and a file: about a second of static, a minute of dynamic work or of muscles.
+DEFAULT_CHUNK = {"static": 20_000, "dynamic": 1000, "muscles": 200}
 MOST_CHUNK = 10**5  # points, which a process holds in memory with half a gigabyte of what leads to them
 MOST_CHUNKS = 10**6  # files of one folder
 MOST_POINTS = 10**9
@@ -36,13 +40,21 @@ NAMES = ("design", "moments")  # axes whose values are names
 _EXAMPLES = {"design": '"d1", "mine.toml"', "moments": '"p1p2", "mine.csv"'}
 
 
+class Muscles(NamedTuple):
+    """How muscles drive a study; riders: a file of an ensemble instead of those of the rider groups."""
+
+    rule: str = BEST
+    duty: float = DUTY
+    riders: Path | None = None
+
+
 @dataclass(frozen=True, repr=False)
 class Study(Brief):
     """Every combination of the grid's values with every point of the sample.
 
     Point i takes sample point i % size; the grid's last axis is the next to turn. grid: by axis, values as in the file.
     sample: by variable, shape (size,). characteristics: whether those of the turn are
-    computed as well. files: what was read, the study file first.
+    computed as well. files: what was read, the study file first. muscles: what drives instead of the moments.
     """
 
     files: list[Path]
@@ -55,6 +67,7 @@ class Study(Brief):
     size: int
     designs: dict[str, Design]
     moments: dict[str, JointMoments]
+    muscles: Stimulation | None = None
 
     @property
     def brief(self) -> str:
@@ -99,9 +112,10 @@ def label(axis: str) -> str:
     return ", ".join(part for part in (axis.removesuffix("_rpm"), unit) if part)
 
 
-def load_study(path: Path, cadence: float | None = None) -> Study:
+def load_study(path: Path, cadence: float | None = None, muscles: Muscles | None = None) -> Study:
     """Read a study file; cadence: of all points, rpm, for a file that says nothing of it.
 
+    muscles: drive, those of the ensembles of the moments that the file names.
     Raises InputError naming file, key and value, and what is allowed.
     """
     content = read_toml(path, "study")
@@ -116,7 +130,9 @@ def load_study(path: Path, cadence: float | None = None) -> Study:
             raise InputError(f"{path}: cadence_rpm is given here; leave out --cadence")
         grid.content["cadence_rpm"] = [cadence]
     analysis, size = settings.choice("analysis", ANALYSES, "static"), _few(sample, "size", sample.whole("size", 1))
-    chunk = _chunk(settings, analysis, size * math.prod(_count(grid, axis) for axis in grid.content))
+    chunk = _chunk(
+        settings, "muscles" if muscles else analysis, size * math.prod(_count(grid, axis) for axis in grid.content)
+    )
     axes = {axis: _axis(grid, axis) for axis in grid.content}
     designs, moments = ([_beside(path, name) for name in axes[axis]] for axis in NAMES)
     files = [Path(name) for name in designs if Path(name).suffix]
@@ -132,9 +148,26 @@ def load_study(path: Path, cadence: float | None = None) -> Study:
         size,
         {name: load_design(file) for name, file in zip(axes["design"], designs, strict=True)},
         {name: load_moments(file) for name, file in zip(axes["moments"], moments, strict=True)},
+        _stimulation(settings, analysis, muscles, axes["moments"]) if muscles else None,
     )
     _check(path, study)
     return study
+
+
+def _stimulation(settings: Section, analysis: str, muscles: Muscles, names: list[str]) -> Stimulation:
+    """Whose muscles drive by the names of the moments. Refuses names of which no muscles are known."""
+    if analysis == "dynamic":
+        settings.refuse("analysis", analysis, "static where muscles drive")
+    widths_up_to(muscles.duty)
+    if muscles.riders and len(names) > 1:
+        raise InputError(f"{settings.path}: grid.moments has {len(names)} names; --muscles is one ensemble for one")
+    unknown = [name for name in names if name not in GROUPS]
+    if unknown and not muscles.riders:
+        raise InputError(
+            f"{settings.path}: grid.moments has {unknown[0]}, of which no muscles are known; keep to "
+            f"{', '.join(GROUPS)}, or give an ensemble with --muscles"
+        )
+    return Stimulation(muscles.rule, muscles.duty, {name: load_riders(muscles.riders or name) for name in names})
 
 
 def _chunk(settings: Section, analysis: str, points: int) -> int:

@@ -44,7 +44,7 @@ class Sweep(Brief):
     @cached_property
     def manifest(self) -> dict[str, Any]:
         """All that the results depend on, as JSON, of long arrays a digest. The order of the grid is part of it."""
-        study = self.study
+        study, muscles = self.study, self.study.muscles
         return {
             "fes-mj": version("fes-mj"),
             "analysis": study.analysis,
@@ -55,7 +55,7 @@ class Sweep(Brief):
             "sample": {name: digest(values) for name, values in study.sample.items()},
             "designs": {name: design_toml(design) for name, design in study.designs.items()},
             "moments": {name: digest(moments) for name, moments in study.moments.items()},
-        }
+        } | ({"muscles": digest(muscles)} if muscles else {})
 
     def schema(self, chunk: int) -> Any:
         """The pyarrow schema of a chunk, marked with study and number: a file of another chunk has another."""

@@ -10,9 +10,12 @@ import fes_mj
 from fes_mj.common.errors import InputError, UnstableError
 from fes_mj.common.units import RPM
 from fes_mj.linkage.variables import replaced
+from fes_mj.muscles.riders import load_riders
+from fes_mj.muscles.rules import BEST, BY_ANGLE
+from fes_mj.statics.muscle_static import MuscleStatic
 from fes_mj.statics.turn import QuasiStatic
 from fes_mj.sweep.evaluation import column_types, evaluate
-from fes_mj.sweep.study import load_study
+from fes_mj.sweep.study import Muscles, load_study
 from tests.conftest import write_study
 
 WIDE = """
@@ -155,3 +158,50 @@ def test_characteristics_are_true_or_false(study: Path) -> None:
     study.write_text('[study]\ncharacteristics = "yes"\n[grid]\ndesign = ["d1"]\n')
     with pytest.raises(InputError, match=r"study\.characteristics is 'yes'"):
         load_study(study)
+
+
+def test_rows_of_muscles_are_those_of_the_designs_alone(tmp_path: Path) -> None:
+    """A knee that the lengths of muscles do not know has the reason of `static`; timing by angle has no windows."""
+    path, riders = tmp_path / "study.toml", load_riders("p1p3").taken(slice(0, 3))
+    riders.save(tmp_path / "mine.npz")
+    path.write_text(
+        '[study]\ncharacteristics = true\n[grid]\ndesign = ["trt"]\nthigh = [0.42, 0.52]\nR2 = [0.14, 0.3]\n'
+    )
+    for rule in (BEST, BY_ANGLE):
+        study = load_study(path, 50.0, Muscles(rule, 0.25, tmp_path / "mine.npz"))
+        columns = evaluate(study, 0)
+        assert columns.keys() == column_types(study).keys()
+        for row in range(study.points):
+            varied = {name: float(columns[name][row]) for name in ("thigh", "R2")}
+            design = replaced(fes_mj.load_design("trt"), varied)
+            why: str | None = None
+            try:
+                summary = MuscleStatic.solve(design, riders, 50 * RPM, rule, 0.25).summary()
+            except InputError as error:
+                why, summary = str(error).removeprefix("trt: "), {}
+            assert columns["why"][row] == why
+            for name in ("power_mean_W", "power_sd_W", "power_peak_to_peak_W", "extrapolated_share"):
+                assert columns[name][row] == pytest.approx(summary.get(name, np.nan), nan_ok=True), name
+        assert sum(why is None for why in columns["why"]) == 2
+
+
+@pytest.mark.parametrize(
+    ("text", "muscles", "said"),
+    [
+        ('[study]\nanalysis = "dynamic"\n', Muscles(), "static where muscles drive"),
+        ("", Muscles(duty=0), "duty is 0"),
+    ],
+)
+def test_what_muscles_cannot_do_is_refused(tmp_path: Path, text: str, muscles: Muscles, said: str) -> None:
+    (tmp_path / "study.toml").write_text(text + '[grid]\ndesign = ["trt"]\n')
+    with pytest.raises(InputError, match=said):
+        load_study(tmp_path / "study.toml", muscles=muscles)
+
+
+def test_moments_of_which_no_muscles_are_known_are_refused(tmp_path: Path) -> None:
+    path = write_study(tmp_path)
+    path.write_text('[grid]\ndesign = ["trt"]\nmoments = ["p1p2", "mine.csv"]\n')
+    with pytest.raises(InputError, match=r"mine\.csv, of which no muscles are known"):
+        load_study(path, muscles=Muscles())
+    with pytest.raises(InputError, match="one ensemble for one"):
+        load_study(path, muscles=Muscles(riders=tmp_path / "mine.npz"))
