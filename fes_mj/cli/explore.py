@@ -1,6 +1,6 @@
 """`fes_mj explore`: the designer's page in the browser."""
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 from cyclopts import Parameter
 from cyclopts.validators import Number
@@ -20,6 +20,7 @@ def explore(
     port: Annotated[int, Parameter(validator=Number(gte=0, lte=65535))] = PORT,
     host: str = THIS_MACHINE,
     browser: bool = True,
+    drive: Literal["moments", "muscles"] = "moments",
     debug: Flag = False,
 ) -> None:
     """Drag the dimensions of a design in the browser and see at once what they do, until Ctrl-C.
@@ -28,6 +29,7 @@ def explore(
         port: Of the page on this machine; 0 takes any that is free.
         host: Address to listen on. At any but the default others can use the page too, if they know its whole address.
         browser: Open the page in the browser.
+        drive: What drives at first: joint moments, or stimulated muscles with the best timing.
         debug: Print where an answer failed, if that was not expected.
     """
     if not host:  # which would be all addresses
@@ -37,4 +39,4 @@ def explore(
     from fes_mj.explore.answers import Answers
     from fes_mj.explore.server import serve
 
-    serve(Answers(loaded, moments), host, port, browser, debug)
+    serve(Answers(loaded, moments, drive), host, port, browser, debug)

@@ -11,6 +11,7 @@ from fes_mj.common.reading import Section, is_number, is_text
 from fes_mj.common.style import COLOURS, MOMENTS
 from fes_mj.explore.dimensions import content_of, design_of, dimensions, of_kind
 from fes_mj.explore.making import making
+from fes_mj.explore.muscles import by_muscles
 from fes_mj.explore.pose import plane
 from fes_mj.explore.runs import RUNS
 from fes_mj.explore.turn import turn
@@ -28,18 +29,19 @@ from fes_mj.simulation.export import mjcf_text
 from fes_mj.simulation.mjcf import build_mjcf
 
 Answer = dict[str, Any]
+DRIVES = ("moments", "muscles")
 STEEPEST = 30.0  # percent, up or down, that a ride is asked for
 
 
 class Answers:
-    """What pages can ask, by name, of one design to begin with and the joint moments that are known.
+    """What pages can ask, by name, of one design to begin with, the joint moments that are known, and what drives.
 
     A question is a JSON object: "page", whose uploads it means, "design" as dimensions.content_of, "moments" by name,
     "legs"; or a file as uploads.read_upload. Every answer may raise InputError.
     """
 
-    def __init__(self, design: Design, moments: JointMoments) -> None:
-        self.design, self.chosen = design, moments.name
+    def __init__(self, design: Design, moments: JointMoments, drive: str = DRIVES[0]) -> None:
+        self.design, self.chosen, self.drive = design, moments.name, drive
         self.shared = {group: load_moments(group) for group in GROUPS} | {moments.name: moments}
         self.uploads = Uploads()
         self.read: Callable[..., Any] = read_upload  # a server does it elsewhere
@@ -47,6 +49,7 @@ class Answers:
             self.start,
             self.turn,
             self.making,
+            self.muscles,
             self.change,
             self.save,
             self.model,
@@ -66,6 +69,7 @@ class Answers:
             "dimensions": dimensions(),
             "moments": [*self._moments(question)],
             "chosen": self.chosen,
+            "drive": self.drive,
             "space": plane(load_limits().polygon),
             "series": MOMENTS,
             "colours": COLOURS,
@@ -79,6 +83,12 @@ class Answers:
         """Whether a design can be laid out and what comes near to what, sized for its turn under "moments"."""
         known = self._moments(question)
         return making(_design(question), known[question.choice("moments", known)])
+
+    def muscles(self, question: Section) -> Answer:
+        """A design and the one it is "compared" with under the muscles of those whose "moments" are asked for."""
+        known = self._moments(question)
+        compared = design_of(question.content.get("compared"))
+        return by_muscles(_design(question), compared, question.choice("moments", known), _legs(question))
 
     def change(self, question: Section) -> Answer:
         """A design of another "kind" or "branch", or with the rider of a "percentile" of a "sex"; as it is without."""

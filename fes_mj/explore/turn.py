@@ -46,7 +46,7 @@ def turn(design: Design, moments: Mapping[str, JointMoments], legs: int = 1) -> 
     first, coarse = (next(iter(turns.values())) for turns in (fine, solved))
     return answer | {
         "broken": broken(design, first),
-        "numbers": _shown(_numbers(first)),
+        "numbers": shown(_numbers(first)),
         "joints": {joint: np.round(np.degrees(angle), DIGITS) for joint, angle in coarse.joint_angle.items()},
         "moments": {name: _under(static, fine[name], legs) for name, static in solved.items()},
     }
@@ -74,7 +74,7 @@ def _under(solved: QuasiStatic, fine: QuasiStatic, legs: int) -> dict[str, Any]:
         "power_mean_W": fine.power_mean,
         "range_deg": {joint: np.degrees(reference.ranges[joint]) for joint in JOINTS},
         "outside": np.maximum(*outside) > 0,
-        "numbers": _shown(_power_numbers(fine, peaks(JointForces(solved).with_masses))),
+        "numbers": shown(_power_numbers(fine, peaks(JointForces(solved).with_masses))),
         "note": fine.extrapolation.verdict,
     }
 
@@ -82,7 +82,7 @@ def _under(solved: QuasiStatic, fine: QuasiStatic, legs: int) -> dict[str, Any]:
 Number: TypeAlias = tuple[str, str, str, str]  # name, words, text, unit
 
 
-def _shown(numbers: Iterable[Number]) -> list[dict[str, str]]:
+def shown(numbers: Iterable[Number]) -> list[dict[str, str]]:
     rows = ((name, words, typeset(text), unit) for name, words, text, unit in numbers)
     return [dict(zip(("name", "words", "text", "unit"), row, strict=True)) for row in rows]
 

@@ -226,6 +226,25 @@ def test_a_search_tells_how_far_it_is_and_can_be_cancelled(page: Page) -> None:
     assert page.page.locator("[data-run]:enabled").count() == 4
 
 
+def test_muscles_drive(page: Page, capsys: pytest.CaptureFixture[str]) -> None:
+    page.choose("#drive", "muscles")
+    page.until(lambda: "±" in page.page.inner_text("#power"))
+    _, result = answer(capsys, "static", "d1", "--drive", "muscles")
+    power = f"{result['power_mean_W']:.2f} ± {result['power_sd_W']:.2f}"
+    assert page.page.inner_text("#power") == f"{power} W"
+    assert page.number("muscles") == power
+    assert page.number("hamstrings") == "{:.0f} to {:.0f}".format(*result["windows_deg"]["hamstrings"])
+    assert page.page.locator("[data-curve='p1p2 muscles']").count() == 1
+    page.set("R2", 15)
+    page.until(lambda: page.page.inner_text("#against").startswith(f"d1 as loaded: {result['power_mean_W']:.2f} W, "))
+    page.page.reload()  # the address says what drives
+    page.settled(0)
+    page.until(lambda: page.page.locator("[data-curve='p1p2 muscles']").count() == 1)
+    page.choose("#drive", "moments")
+    assert page.page.locator("#numbers tr[data-name=muscles]").count() == 0
+    assert page.page.inner_text("#power") == f"{page.number('power')} W"
+
+
 def test_clearances_and_layers(page: Page) -> None:
     page.until(lambda: page.page.inner_text("#making .verdict") == "feet 186 mm apart")
     page.page.click("#making summary")

@@ -3,6 +3,7 @@
 import { ANGLES, Scene } from "./scene.js";
 import { Plot, legend } from "./plot.js";
 import { Making } from "./making.js";
+import { REST, Rested } from "./rested.js";
 import { Runs } from "./runs.js";
 import { ask, download } from "./server.js";
 import { Sliders, edited, within } from "./sliders.js";
@@ -11,7 +12,6 @@ const $ = (id) => document.getElementById(id);
 const copy = (value) => JSON.parse(JSON.stringify(value));
 const AS_LOADED = "as loaded";
 const DASH = "5 4";
-const REST = 400; // ms without a change after which the design is an entry of the browser's history
 
 function tell(text) {
   $("message").textContent = text;
@@ -27,6 +27,8 @@ const state = {
   loaded: null, // the same as it came
   touched: null, // the dimension that was changed last
   moments: start.chosen,
+  drive: start.drive,
+  muscles: null, // what they do, when that has been computed
   hidden: new Set(),
   angle: 0,
   playing: !matchMedia("(prefers-reduced-motion: reduce)").matches,
@@ -37,13 +39,20 @@ const scene = new Scene($("scene"), start.space);
 const powerPlot = new Plot($("power-plot"), (angle) => hold(angle));
 const jointsPlot = new Plot($("joints-plot"), (angle) => hold(angle));
 const sliders = new Sliders(document.querySelectorAll("[data-owner]"), start.dimensions, changed);
-const making = new Making($("making"), () => copy(asked()), hold);
+const making = new Making($("making"), (angle) => hold(angle));
+const clearances = new Rested("making", (answer) => making.show(answer));
+const muscles = new Rested("muscles", (answer) => {
+  if (answer === state.muscles) return; // none yet
+  state.muscles = answer;
+  showNumbers();
+  redraw();
+});
 const runs = new Runs($("runs"), $("verdict"), asRun, () => JSON.stringify(asked()), take);
 
 // ---- The design in hand. What it was stands in the browser's history, and in the address so that it can be sent.
 
 const legs = () => Number($("legs").value);
-const asked = () => ({ design: state.design, legs: legs(), moments: state.moments });
+const asked = () => ({ design: state.design, legs: legs(), moments: state.moments, drive: state.drive });
 const address = () => `#${encodeURIComponent(JSON.stringify(asked()))}`;
 
 function snapshot() {
@@ -60,7 +69,7 @@ function changed(name, dragging) {
   state.touched = name;
   tell("");
   clearTimeout(resting);
-  if (!dragging) resting = setTimeout(commit, REST);
+  if (!dragging) resting = setTimeout(commit, REST); // then it is an entry of the browser's history
   $("undo").disabled = false;
   refresh(dragging);
 }
@@ -113,6 +122,7 @@ async function arrive() {
     const { design } = await ask("change", { design: sent.design ?? start.designs[start.design] });
     if (start.moments.includes(sent.moments)) state.moments = sent.moments;
     if (sent.legs === 2) $("legs").value = "2";
+    if (sent.drive === "muscles" || sent.drive === "moments") state.drive = sent.drive;
     Object.assign(state, { design, loaded: history.state?.loaded ?? copy(design), touched: null });
   } catch (error) {
     state.design = copy((state.loaded = start.designs[start.design]));
@@ -121,6 +131,7 @@ async function arrive() {
   const { design, loaded } = state;
   history.replaceState({ design, loaded, place: history.state?.place ?? 0 }, "", address());
   options($("moments"), start.moments, state.moments);
+  $("drive").value = state.drive;
   showDesigns();
   showDesign();
 }
@@ -144,15 +155,28 @@ async function refresh(dragging = false) {
   }
   busy = false;
   runs.compare();
-  making.ask(Boolean(state.turn?.moments));
+  askRested();
   const next = again;
   again = null;
   if (next) refresh(next.dragging);
   else document.body.dataset.updates = Number(document.body.dataset.updates || 0) + 1;
 }
 
+// What takes longer than a curve may.
+function askRested() {
+  const turns = Boolean(state.turn?.moments), { design, moments } = state;
+  $("making").hidden = !turns;
+  clearances.ask(turns ? { design, moments } : null);
+  muscles.ask(turns && state.drive === "muscles" ? { ...asked(), compared: compared() } : null);
+}
+
+function compared() {
+  const chosen = $("compared").value;
+  return chosen === AS_LOADED ? state.loaded : start.designs[chosen];
+}
+
 async function compare(legs) {
-  const chosen = $("compared").value, design = chosen === AS_LOADED ? state.loaded : start.designs[chosen];
+  const chosen = $("compared").value, design = compared();
   const key = JSON.stringify([design, legs, start.moments]);
   if (state.reference?.key === key) return;
   state.reference = { key, name: chosen === AS_LOADED ? `${design.name} as loaded` : chosen, turn: await ask("turn", { design, legs }) };
@@ -188,7 +212,7 @@ function showNumbers() {
   const broken = $("limits").checked && !turn.failing ? turn.broken : [];
   const marks = new Set(turn.failing ? [state.touched] : broken.flatMap((limit) => limit.marks));
   $("title").textContent = state.design.name;
-  $("numbers").replaceChildren(...[...(own?.numbers ?? []), ...(turn.numbers ?? [])].map(({ name, words, text, unit }) => {
+  $("numbers").replaceChildren(...[...(state.muscles?.numbers ?? []), ...(own?.numbers ?? []), ...(turn.numbers ?? [])].map(({ name, words, text, unit }) => {
     const row = document.createElement("tr");
     row.dataset.name = name;
     row.classList.toggle("outside", marks.has(name));
@@ -197,11 +221,20 @@ function showNumbers() {
   }));
   $("broken").replaceChildren(...broken.map(({ text }) => Object.assign(document.createElement("li"), { textContent: text })));
   sliders.mark(marks);
-  $("note").textContent = own?.note ? `Note: ${own.note}.` : "";
-  $("power").textContent = own ? `${own.numbers[0].text} W` : "no power";
-  const change = own && other ? (100 * (own.power_mean_W - other.power_mean_W)) / Math.abs(other.power_mean_W) : NaN;
+  const why = state.muscles?.why;
+  $("note").textContent = [own?.note && `Note: ${own.note}.`, why && `Muscles: ${why}.`].filter(Boolean).join(" ");
+  headline(own && { ...own, compared_W: other?.power_mean_W });
+}
+
+// The power of one leg under what drives, beside that of the design it is compared with.
+function headline(byMoments) {
+  const result = state.drive === "muscles" ? byMoments && state.muscles : byMoments;
+  if (byMoments && !result) $("power").textContent = "…";
+  else $("power").textContent = result?.numbers ? `${result.numbers[0].text} W` : "no power";
+  const power = result?.power_mean_W, other = result ? result.compared_W : state.reference.turn.moments?.[state.moments]?.power_mean_W;
+  const change = (100 * (power - other)) / Math.abs(other);
   const percent = Number.isFinite(change) && Math.abs(change) >= 0.05 ? `, ${change < 0 ? "−" : "+"}${Math.abs(change).toFixed(1)} %` : "";
-  $("against").textContent = other ? `${reference.name}: ${other.power_mean_W.toFixed(2)} W${percent}` : "";
+  $("against").textContent = Number.isFinite(other) ? `${state.reference.name}: ${other.toFixed(2)} W${percent}` : "";
 }
 
 // ---- Curves
@@ -221,6 +254,11 @@ function showPlots() {
       bands.push({ low: of.masses.map((y, n) => y - of.sd[n]), high: of.masses.map((y, n) => y + of.sd[n]), colour });
     }
   });
+  if (state.muscles?.static) {
+    const name = `${state.moments} muscles`, { static: y, sd } = state.muscles, colour = start.series[start.moments.indexOf(state.moments) % start.series.length];
+    curves.push({ name, y, colour, width: 2.4, dash: "9 3 2 3" });
+    if (!state.hidden.has(name)) bands.push({ low: y.map((power, n) => power - sd[n]), high: y.map((power, n) => power + sd[n]), colour });
+  }
   const other = reference.turn.moments?.[state.moments];
   if (other) curves.unshift({ name: reference.name, y: other.masses, colour: start.colours.comparison, width: 1.2 });
   const visible = curves.filter((curve) => !state.hidden.has(curve.name));
@@ -322,6 +360,7 @@ $("limits").addEventListener("change", () => show(false));
 $("compared").addEventListener("change", () => refresh());
 $("design").addEventListener("change", (event) => load(start.designs[event.target.value]));
 $("moments").addEventListener("change", (event) => { state.moments = event.target.value; refresh(); });
+$("drive").addEventListener("change", (event) => { state.drive = event.target.value; refresh(); });
 $("kind").addEventListener("change", attempt((event) => change({ kind: event.target.value })));
 $("branch").addEventListener("change", attempt((event) => change({ branch: event.target.value })));
 $("take-rider").addEventListener("click", attempt(async () => {
