@@ -17,7 +17,9 @@ from fes_mj.common.writing import PAGES, require_writable, write_text
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.design_file import load_design
 from fes_mj.linkage.turning import CRANK_ZERO
+from fes_mj.muscles.rules import BEST
 from fes_mj.muscles.settings import MISTIMED, Settings
+from fes_mj.muscles.timing import DUTY
 from fes_mj.riding.stimulation import CORE, Window, stimulation as find_windows, summary, table_csv
 
 _SLOWEST, _STEP, _APART = 30, 10, 5  # rpm: of the cadences below the main one, by which a start passes
@@ -57,7 +59,7 @@ def stimulation(
     if drive.drive == "moments":
         _by_moments(loaded, cadence, whose, drive, csv, pages, options)
         return
-    if drive.timing != "best":
+    if drive.timing != BEST:
         raise InputError(
             f"--timing is {drive.timing}; windows that suit all riders who may be this one are those of `best`, "
             f"others are compared by `fes_mj static {design} --drive muscles --timing {drive.timing}`"
@@ -97,6 +99,8 @@ def _print(settings: Settings) -> None:
     if len(settings.by_cadence) > 1:
         print_table("By cadence, right leg", ("rpm", *(row[0] for row in rows), "both legs, W"), _by_cadence(settings))
     say(f"0: {CRANK_ZERO}; the left leg's windows are 180 deg later. Delay and rise of the muscles are counted in.")
+    for note in content["notes"]:
+        say(f"note: {note}")
     say("Effort: share of the turn x strength x largest force, per that of the measurement.")
 
 
@@ -137,7 +141,14 @@ def _by_moments(
     options: PrintOptions,
 ) -> None:
     """Windows of the linkage alone."""
-    given = {"--cadence": cadence, "--moments": whose.moments, "--group": whose.group, "--muscles": drive.muscles}
+    given = {
+        "--cadence": cadence,
+        "--moments": whose.moments,
+        "--group": whose.group,
+        "--muscles": drive.muscles,
+        "--duty": drive.duty != DUTY,
+        "--timing": drive.timing != BEST,
+    }
     if said := [flag for flag, value in given.items() if value]:
         raise InputError(
             f"{said[0]}: where moments drive the crank depends on the linkage alone; leave it out, or use --drive "

@@ -62,14 +62,16 @@ class Anatomy:
         scales = (sum(theirs[part] for part in along) / sum(own[part] for part in along) for along in self.segments)
         return np.stack([np.atleast_2d(scale) for scale in np.broadcast_arrays(*scales)])
 
-    def require_range(self, name: str, flexion: Flexion) -> None:
+    def require_range(
+        self, name: str, flexion: Flexion, advice: str = "move the seat, or leave out --drive muscles"
+    ) -> None:
         """Raise InputError, naming the joint, where a motion leaves the angles for which lengths are known."""
         for joint, (low, high) in (("hip", self.hip_deg), ("knee", self.knee_deg)):
             angle = np.degrees(getattr(flexion, joint))
             if angle.min() < low or angle.max() > high:
                 raise InputError(
                     f"{name}: the {joint} bends from {angle.min():.1f} to {angle.max():.1f} deg; muscle lengths are "
-                    f"known from {low:g} to {high:g} deg of flexion: move the seat, or leave out --drive muscles"
+                    f"known from {low:g} to {high:g} deg of flexion: {advice}"
                 )
 
     def changed_arms(self, flexion: Flexion) -> list[str]:

@@ -18,6 +18,7 @@ from fes_mj.muscles.prior import priors
 
 SHIPPED = DATA / "muscles"
 _TRICYCLE = ("R1x", "R1y", "R2", "R6", "seat_angle", "thigh", "shank", "mass")  # and the cadence, rad/s
+_WRITES = "`fes_mj moments TRIAL --fit-muscles -o RIDER.npz` writes one"
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,13 +87,23 @@ def load_riders(source: str | Path) -> Riders:
 
     Raises InputError for a file that is none.
     """
+    import zlib
+    from zipfile import BadZipFile
+
     shipped = SHIPPED / f"{source}.npz"
     path = shipped if shipped.is_file() else Path(source)
     try:
-        with np.load(path, allow_pickle=False) as stored:
+        with path.open("rb") as file, np.load(file, allow_pickle=False) as stored:
             columns = {name: np.asarray(stored[name], float) for name in ("likelihood", "measured_on", *priors())}
-    except (OSError, ValueError, KeyError, EOFError) as error:
-        raise InputError(f"{path}: no ensemble of riders: {error}") from None
+    except FileNotFoundError:
+        raise InputError(f"{path}: there is no such file; {_WRITES}") from None
+    except (OSError, ValueError, KeyError, EOFError, BadZipFile, zlib.error):
+        raise InputError(f"{path}: no ensemble of riders; {_WRITES}") from None
+    sizes = {name: column.shape for name, column in columns.items() if name != "measured_on"}
+    whole = len(set(sizes.values())) == 1 and columns["likelihood"].ndim == 1 and columns["likelihood"].size > 0
+    known = all(np.isfinite(column).all() for column in columns.values())
+    if not (whole and known and columns["measured_on"].shape == (len(_TRICYCLE) + 1,)):
+        raise InputError(f"{path}: an ensemble of riders with columns that do not fit each other; {_WRITES}")
     *numbers, cadence = map(float, columns["measured_on"])
     design = replaced(PAPER_TRICYCLE.design, dict(zip(_TRICYCLE, numbers, strict=True)))
     measured_on = PAPER_TRICYCLE if shipped == path else ReferenceTricycle(design, cadence)

@@ -52,6 +52,14 @@ class Stimulated:
         rate = self.motion.joint_rate
         return np.asarray(self.cadence * (self.moment.knee * rate.knee + self.moment.hip * rate.hip))
 
+    @property
+    def notes(self) -> list[str]:
+        """What a reader must know of the result: muscles whose moment arm changes its sign."""
+        offset = self.riders["hip_offset_deg"]
+        ends = np.radians(np.stack([offset.min(axis=0), offset.max(axis=0)]))
+        changed = anatomy().changed_arms(Flexion.along(self.motion, ends))
+        return [f"the moment arm of {arm} changes its sign within the angles that are used" for arm in changed]
+
 
 def stimulated(rule: str, riders: Riders, design: Design, cadence: float, duty: float = DUTY) -> Stimulated:
     """Riders on a design under one of RULES.

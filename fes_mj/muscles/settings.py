@@ -176,6 +176,7 @@ class Settings:
             "mistimed_deg": MISTIMED,
             **main.summary(),
             "settings": [setting.summary() for setting in self.by_cadence],
+            "notes": main.stimulated.notes,
             "windows": [record for setting in self.by_cadence for record in setting.records()],
         }
 

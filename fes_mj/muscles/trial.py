@@ -62,7 +62,11 @@ def measured_moments(moments: JointMoments, orders: int = ORDERS) -> Measured:
         )
     motion = kinematics.solve(moments.measured_on.design)
     offsets = np.radians(np.array(priors()["hip_offset_deg"]["even"]))[:, None]
-    anatomy().require_range(f"{moments.name}, with a pelvis that tilts", Flexion.along(motion, offsets))
+    anatomy().require_range(
+        f"{moments.name}, with a pelvis that may tilt",
+        Flexion.along(motion, offsets),
+        "are seat_angle and R1 of measured_on as they were?",
+    )
     one = [*range(orders + 1), *range(HARMONICS + 1, HARMONICS + 1 + orders)]
     rows = np.array([*one, *(TERMS + row for row in one)])
     values = np.concatenate([*moments.coefficients])

@@ -14,7 +14,6 @@ from fes_mj.common.arrays import FloatArray
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.legs import all_legs
 from fes_mj.muscles.anatomy import GROUPS, anatomy
-from fes_mj.muscles.geometry import Flexion
 from fes_mj.muscles.prior import ramp
 from fes_mj.muscles.riders import Riders
 from fes_mj.muscles.rules import Stimulated, stimulated
@@ -83,9 +82,7 @@ class MuscleStatic(DrivenTurn):
     @property
     def notes(self) -> list[str]:
         """What a reader must know of the result: muscles whose moment arm changes its sign."""
-        rider = self.stimulated.riders.most_probable
-        changed = anatomy().changed_arms(Flexion.along(self.motion, np.radians(rider["hip_offset_deg"])))
-        return [f"the moment arm of {arm} changes its sign within the angles that are used" for arm in changed]
+        return self.stimulated.notes
 
     def summary(self) -> dict[str, Any]:
         """As DrivenTurn.summary; power and work are one leg's, evenness is that of all legs together."""

@@ -1,0 +1,1 @@
+"""What stimulated muscles leave of the paper's gains: results/muscles.*"""
