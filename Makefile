@@ -41,11 +41,13 @@ benchmark: $(VENV)/.ready
 	for name in core start exudyn muscles optimization ride video; do $(BIN)/python -m benchmarks.$$name || exit 1; done
 
 # Every check on every design, refined, with all faults injected: results/verification.md; every ride by both solvers:
-# results/ride_verification.md; what muscles leave of the gains: results/muscles.md; what each setting of the simulation is worth: results/settings.md
+# results/ride_verification.md; what muscles leave of the gains: results/muscles.md; what of it
+# agrees with measurements: results/published.md; what each setting of the simulation is worth: results/settings.md
 verification: $(VENV)/.ready
 	$(BIN)/python tools/update_verification.py
 	$(BIN)/python -m studies.ride_verification
 	$(BIN)/python -m studies.muscles
+	$(BIN)/python -m studies.published
 	$(BIN)/python -m studies.settings
 
 # What the package ships as data: the identified designs, the recovered moments and the riders who may have given them.

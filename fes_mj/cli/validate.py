@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Group, Parameter
 
+from fes_mj.cli.against import against as report_against
 from fes_mj.cli.cases import checked_case
 from fes_mj.cli.options import DesignName, Flag, RunOptions, needs
 from fes_mj.cli.tables import print_checks, print_notes
@@ -38,6 +39,7 @@ def validate(
     video: Annotated[Path | None, Parameter(group=_REPORT)] = None,
     junit: Path | None = None,
     explain: str | None = None,
+    against: str | None = None,
 ) -> int:
     """Run every check of the harness on designs, the paper's five if none is named; exit code 1 if one fails.
 
@@ -49,9 +51,14 @@ def validate(
         junit: Write the verdicts as JUnit XML (.xml), for continuous integration.
         explain: Instead: what this check guards against and what usually breaks it, for example mean_power; `all` lists
             them.
+        against: Instead: `published`, predictions beside what others measured, or the file of an experiment (.toml),
+            what it does to the probabilities of the gains. Both report: the exit code is 0 whatever agrees.
     """
     if explain is not None:
         return _explain(explain)
+    if against is not None:
+        others = {"DESIGN": designs, "--report": report, "--junit": junit, "--faults": faults, "--quick": quick}
+        return report_against(against, options, others)
     cases = list(_cases(designs or DESIGNS, options, quick))
     _check_files(report, junit, video, options.inputs(*designs))
     checks = _run_checks(cases, quick, options)

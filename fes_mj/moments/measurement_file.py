@@ -65,7 +65,7 @@ class Description:
         """Raises InputError naming file, key, value and what is allowed."""
         content = read_toml(path, "measurement file")
         content.only(("moments", "measured_on"))
-        section, measured_on = content.section("moments"), _measured_on(content.section("measured_on"))
+        section, measured_on = content.section("moments"), read_tricycle(content.section("measured_on"))
         section.only((*_COLUMNS, *_OTHERS))
         section.require(["file"], "it names the file that holds the moments")
         data, kinematics = _paths(section, "file"), _paths(section, "kinematics")
@@ -176,7 +176,7 @@ def _scale(section: Section, rider: Section, measured_on: ReferenceTricycle) -> 
     return UNITS[name] * (measured_on.design.rider.mass if per_kg else 1.0)
 
 
-def _measured_on(section: Section) -> ReferenceTricycle:
+def read_tricycle(section: Section) -> ReferenceTricycle:
     """The tricycle, rider and cadence: the paper's, with what the file says of its own."""
     section.choice("kind", ("trt",), "trt")
     rider, paper = section.section("rider"), PAPER_TRICYCLE.design

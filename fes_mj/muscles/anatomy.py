@@ -1,6 +1,6 @@
 """The stimulated muscles of a leg: whose group each is, its lengths over hip and knee flexion, its parameters."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from itertools import pairwise
 from pathlib import Path
@@ -51,6 +51,13 @@ class Anatomy:
         """Which muscle is the part of the quadriceps that passes the hip as well, shape (muscles,)."""
         two_joints = np.array([len(along) == 2 for along in self.segments])
         return np.asarray(two_joints & (self.group == GROUPS.index("quadriceps")))
+
+    def only(self, group: str) -> "Anatomy":
+        """The muscles of one group."""
+        rows = self.of_group[GROUPS.index(group)]
+        columns = ("names", "group", "force", "optimal", "slack", "pennation", "segments")
+        lengths = Surfaces(self.lengths.coefficients[rows], self.lengths.degree)
+        return replace(self, lengths=lengths, **{name: getattr(self, name)[rows] for name in columns})
 
     def length_scale(self, rider: Rider) -> FloatArray:
         """Of length, fibre and tendon alike, by the rider's segments per the adult's, shape (muscles, designs, 1).

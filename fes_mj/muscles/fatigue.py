@@ -16,9 +16,9 @@ FLOOR = 0.2  # of the fresh force, which is left under activation that never end
 FALL, RECOVERY = 30.0, 50.0  # s
 
 
-def force_factor(activation: Any, time: Any, recovery: float = RECOVERY) -> FloatArray:
-    """Force per fresh force after a time (s) at a mean activation, of shapes that broadcast; recovery: s."""
-    falling, rising = np.asarray(activation) / FALL, (1 - np.asarray(activation)) / recovery
+def force_factor(activation: Any, time: Any, recovery: Any = RECOVERY, fall: Any = FALL) -> FloatArray:
+    """Force per fresh force after a time (s) at a mean activation, of shapes that broadcast; recovery, fall: s."""
+    falling, rising = np.asarray(activation) / fall, (1 - np.asarray(activation)) / recovery
     rate = falling + rising
     end = (FLOOR * falling + rising) / rate
     return np.asarray(end + (1 - end) * np.exp(-rate * np.asarray(time)))

@@ -194,6 +194,17 @@ def identify(
 
     name: of the riders; advance: called with the number of candidates just seen.
     """
+
+    def seen(riders: Riders) -> Candidates:
+        return Candidates.of(replace(riders, measured_on=measured.reference), measured, advance)
+
+    return weighed(seen, measured.values, random, count, name)
+
+
+def weighed(
+    seen: Callable[[Riders], Candidates], measured: FloatArray, random: np.random.Generator, count: int, name: str
+) -> Posterior:
+    """The same of any numbers, shape (rows,); seen: what these would be of riders with strengths of 1."""
     quantities = [name for name in priors() if name not in STRENGTHS]
     centre, spread = np.zeros(len(quantities)), np.eye(len(quantities))
     for stage in range(STAGES):
@@ -202,14 +213,14 @@ def identify(
         scores = np.where(random.random((count, 1)) < _FROM_PRIOR, own, there) if stage else own
         values = {name: quantile(name, column) for name, column in zip(quantities, scores.T, strict=True)}
         unit = {name: np.ones(count) for name in STRENGTHS}
-        candidates = Candidates.of(Riders(name, unit | values, np.zeros(count), measured.reference), measured, advance)
+        candidates = seen(Riders(name, unit | values, np.zeros(count)))
         numbers = random.standard_normal((DRAWS, count, len(GROUPS)))
-        riders, likelihood = candidates.posterior(measured.values, numbers)
+        riders, likelihood = candidates.posterior(measured, numbers)
         # a proposal's density per that of the prior
         ratio = np.exp(_log_density(scores - centre, spread) + np.sum(scores**2, axis=1) / 2)
         log_weight = likelihood - np.log(_FROM_PRIOR + (1 - _FROM_PRIOR) * ratio)
         if np.isfinite(log_weight).sum() < 2 * len(quantities):
-            raise InputError(f"{name}: no muscles that pull can have given these moments: {DOUBTS}")
+            raise InputError(f"{name}: no muscles that pull can have given these numbers: {DOUBTS}")
         posterior = Posterior(riders, log_weight)
         weights = posterior.flattened().weights
         centre, spread = np.average(scores, axis=0, weights=weights), np.cov(scores.T, aweights=weights)

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from fes_mj.common.arrays import FloatArray
+from fes_mj.linkage.design import Rider
 from fes_mj.linkage.joints import PerJoint
 from fes_mj.linkage.kinematics import Motion
 from fes_mj.muscles.anatomy import Anatomy, anatomy
@@ -54,10 +55,16 @@ def pull(riders: Riders, motion: Motion, cadence: Any, muscles: Anatomy | None =
 
     muscles: those that ship by default.
     """
+    flexion = Flexion.along(motion, np.radians(riders["hip_offset_deg"]))
+    rate = motion.joint_rate.map(lambda rate: -cadence * np.atleast_2d(rate))
+    return pull_at(riders, flexion, Flexion(rate.hip, rate.knee), motion.design.rider, muscles)
+
+
+def pull_at(riders: Riders, flexion: Flexion, rate: Flexion, rider: Rider, muscles: Anatomy | None = None) -> Pull:
+    """The same at angles and rates of flexion (rad, rad/s) of shape (members or 1, designs, angles)."""
     muscles = muscles or anatomy()
     column = (slice(None), None, None, None)
-    lengths = muscles.lengths.at(Flexion.along(motion, np.radians(riders["hip_offset_deg"])))
-    rate = motion.joint_rate.map(lambda rate: -cadence * np.atleast_2d(rate))  # of flexion
+    lengths = muscles.lengths.at(flexion)
     speed = lengths.by_hip * rate.hip + lengths.by_knee * rate.knee
     # length, fibre and tendon grow alike with the rider, so that relative lengths and speeds are those of the anatomy
     relative, _ = tension(
@@ -69,4 +76,4 @@ def pull(riders: Riders, motion: Motion, cadence: Any, muscles: Anatomy | None =
         riders["max_speed"],
     )
     force = relative * (riders.strength(muscles) * muscles.force[column])
-    return Pull(muscles, force, lengths, speed, muscles.length_scale(motion.design.rider)[:, None])
+    return Pull(muscles, force, lengths, speed, muscles.length_scale(rider)[:, None])

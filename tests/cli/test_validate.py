@@ -142,3 +142,35 @@ def test_all_are_listed_and_an_unknown_one_is_refused(capsys: pytest.CaptureFixt
     assert all(name in text for name in definitions())
     assert run(["validate", "--explain", "loopgap"]) == 2
     assert capsys.readouterr().err == "fes_mj: loopgap: no such check; did you mean loop_gap?\n"
+
+
+def test_published_measurements_are_a_report(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from fes_mj.validation import published
+
+    few = [row for row in published.rows() if row.content["predicted_by"] in ("lost_force", "knee_of_largest_torque")]
+    monkeypatch.setattr(published, "rows", lambda: few)
+    code, content = answer(capsys, "validate", "--against", "published")
+    assert code == 0
+    assert content["verdicts"] == {"agrees": 1, "contradicts": 1, "cannot tell": 1}
+    assert {"question", "drive", "timing", "predicted", "measured", "verdict", "assumed", "source"} <= set(
+        content["rows"][0]
+    )
+    assert run(["validate", "--against", "published"]) == 0
+    printed = " ".join(capsys.readouterr().out.split())
+    assert "1 contradicts" in printed
+    assert "contradicts, unless muscles" in printed
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["d1", "--against", "published"], "exclude each other"),
+        (["--against", "somebody"], "must be published, or the .toml file"),
+        (["--against", "none.toml"], "cannot read the experiment"),
+    ],
+)
+def test_against_what(arguments: list[str], said: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["validate", *arguments]) == 2
+    assert said in " ".join(capsys.readouterr().err.split())

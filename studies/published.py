@@ -1,0 +1,103 @@
+"""Write results/published.*: what is predicted beside what somebody measured. python -m studies.published"""
+
+from pathlib import Path
+from typing import Any
+
+from matplotlib.figure import Figure
+
+from fes_mj.common.markdown import Table
+from fes_mj.common.provenance import provenance
+from fes_mj.common.style import SERIES
+from fes_mj.common.writing import json_text, write_text
+from fes_mj.validation.published import FILE, RULE, VERDICTS, counts, rows
+from fes_mj.viewing.charts import write_figure
+
+PATH = Path(__file__).parents[1] / "results" / "published.md"
+TITLES = {"measurement": "Measurements", "model": "Models of others"}
+COLUMNS = {
+    **dict.fromkeys(("measurement", "predicted by", "unit"), ""),
+    **dict.fromkeys(("predicted 5 %", "predicted 50 %", "predicted 95 %", "measured from", "to"), ".3g"),
+    "verdict": "",
+}
+INTRODUCTION = """# Predictions beside measurements
+
+Written by `python -m studies.published`; on the terminal `fes_mj validate --against published`. Nothing is fitted to
+the number that it is compared with. Every set-up, and what had to be assumed because a source does not say it or could
+only be read in its abstract, stands below and in [published.toml](../fes_mj/data/published.toml).
+"""
+
+
+def tables(records: list[dict[str, Any]]) -> list[Table]:
+    """One of measurements, one of models."""
+    made = []
+    for kind, title in TITLES.items():
+        cells = [
+            (
+                record["name"],
+                f"{record['drive']}; {record['timing']}",
+                record["unit"].replace("1", "ratio"),
+                *record["predicted"],
+                *record["measured"],
+                record["verdict"],
+            )
+            for record in records
+            if record["kind"] == kind
+        ]
+        made.append(Table(title, COLUMNS, cells))
+    summary = {"verdict": "", "measurements": "d"}
+    return [Table("Verdicts", summary, [*counts(records).items()]), *made]
+
+
+def details(record: dict[str, Any]) -> str:
+    """What a reader asks of a row."""
+    lines = [
+        f"### {record['name']}",
+        f"{record['question']} Asked of {' and '.join(record['riders']).upper()}: {record['quantity']}.",
+        f"- measured: {record['said']} ({record['source']})",
+        f"- assumed: {record['assumed']}",
+        f"- verdict: **{record['verdict']}**",
+    ]
+    lines += [f"- what would have to be true: {record['unless']}"] if record["unless"] else []
+    return "\n\n".join(lines[:2]) + "\n\n" + "\n".join(lines[2:]) + "\n"
+
+
+def figure(records: list[dict[str, Any]]) -> Figure:
+    """Predictions in units of the measurement: its interval from -1 to 1, of a direction its side of 0."""
+    shown = [record for record in records if record["kind"] == "measurement"]
+    made = Figure(figsize=(7.2, 0.3 * len(shown) + 1), layout="constrained")
+    axes: Any = made.subplots()
+    for place, record in enumerate(reversed(shown)):
+        low, high = record["measured"]
+        edge = low if high is None else high if low is None else (low + high) / 2
+        scale = abs(edge or 1) if None in (low, high) else (high - low) / 2
+        ends = [max(-6.0, min(6.0, (value - edge) / scale)) for value in record["predicted"]]
+        axes.barh(place, [2, 6][None in (low, high)], left=-1 if None not in (low, high) else 0, color="#d9dce1")
+        colour = SERIES[(2, 1, 0)[VERDICTS.index(record["verdict"])]]
+        axes.plot([ends[0], ends[2]], [place, place], color=colour, lw=3)
+        axes.plot(ends[1], place, "o", color=colour)
+    axes.set(
+        xlim=(-6, 6),
+        yticks=range(len(shown)),
+        xlabel="prediction in half widths of the measurement (grey), beside a direction in its own unit",
+    )
+    axes.set_yticklabels([record["name"] for record in reversed(shown)], fontsize=7)
+    for name, colour in zip(VERDICTS, (SERIES[2], SERIES[1], SERIES[0]), strict=True):
+        axes.plot([], [], color=colour, lw=3, label=name)
+    made.legend(loc="outside lower center", ncols=3)
+    return made
+
+
+def main() -> None:
+    records = [row.record() for row in rows()]
+    made = tables(records)
+    picture = PATH.with_suffix(".png")
+    pages = [INTRODUCTION + "\n" + RULE, *(table.markdown() for table in made)]
+    pages += ["![Predictions in half widths of the measurements](published.png)\n", "## Row by row\n"]
+    write_text(PATH, "\n\n".join(page.rstrip() for page in [*pages, *map(details, records)]) + "\n")
+    content = {table.title: table.records() for table in made}
+    write_text(PATH.with_suffix(".json"), json_text({"provenance": provenance([FILE]), "rows": records, **content}))
+    write_figure(picture, figure, records)
+
+
+if __name__ == "__main__":
+    main()
