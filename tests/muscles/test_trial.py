@@ -88,7 +88,7 @@ def test_moments_of_no_muscle_are_refused():
 
 
 def test_signs_the_wrong_way_round_are_refused():
-    with pytest.raises(InputError, match="no muscles that pull can have given these moments: are signs, units"):
+    with pytest.raises(InputError, match="no muscles that pull can have given these numbers: are signs, units"):
         fit_muscles(replace(TRIAL, knee=-3 * TRIAL.knee, hip=-3 * TRIAL.hip), 200, 2)
 
 
