@@ -138,6 +138,6 @@ def over_time(cadences: Rows) -> Figure:
         for (title, recovery), style in zip(recoveries().items(), ("-", (0, (4, 2))), strict=True):
             label = f"{width} deg, {title}"
             course.plot(MINUTES, tired(turn, recovery), color=colour, ls=style, label=label)
-    course.set(xlabel="minutes on the TRT", xlim=(0, 30), ylim=(0, None))
-    course.legend(loc="lower left", bbox_to_anchor=(0, 1.0), ncols=3, fontsize=6.5)
+    course.set(xlabel="minutes on the TRT, windows and recovery as named", xlim=(0, 30), ylim=(0, None))
+    course.legend(loc="upper right")
     return figure

@@ -90,7 +90,7 @@ def gain_rows(cadence_rpm: float | None) -> Iterator[tuple[Any, ...]]:
                 powers[name] = stimulated(rule, riders, design, cadence, duty).power.mean(axis=1)
                 works[name] = powers[name] / turns_per_second(cadence)
             title = f"best, {360 * duty:.0f} deg" if rule == RULES[0] else rule
-            for name in SIX_BARS:
+            for name in DESIGNS:
                 gain = powers[name] / powers["trt"]
                 turn = quantiles(works[name] / works["trt"])
                 above = [probability(gain > least) for least in (1, 1.25, 2)]
