@@ -94,7 +94,7 @@ def main() -> None:
     pages = [INTRODUCTION + "\n" + RULE, *(table.markdown() for table in made)]
     pages += ["![Predictions in half widths of the measurements](published.png)\n", "## Row by row\n"]
     write_text(PATH, "\n\n".join(page.rstrip() for page in [*pages, *map(details, records)]) + "\n")
-    content = {table.title: table.records() for table in made}
+    content = {table.title: table.records() for table in made} | {"count": sum(counts(records).values())}
     write_text(PATH.with_suffix(".json"), json_text({"provenance": provenance([FILE]), "rows": records, **content}))
     write_figure(picture, figure, records)
 
