@@ -11,9 +11,9 @@ from fes_mj.common.reading import Section, is_number, is_text
 from fes_mj.common.style import COLOURS, MOMENTS
 from fes_mj.explore.dimensions import content_of, design_of, dimensions, of_kind
 from fes_mj.explore.making import making
-from fes_mj.explore.muscles import by_muscles
+from fes_mj.explore.muscles import by_muscles, require_muscles
 from fes_mj.explore.pose import plane
-from fes_mj.explore.runs import RUNS
+from fes_mj.explore.runs import BY_MUSCLES, RUNS
 from fes_mj.explore.turn import turn
 from fes_mj.explore.uploads import Uploads, moments_of_bundle, read_upload
 from fes_mj.linkage.design import ARCHITECTURES, BRANCHES, SEXES, Design
@@ -126,6 +126,11 @@ class Answers:
     def run(self, name: str, question: Section) -> Callable[[Path], Answer]:
         """What runs.RUNS is asked, with all that it needs, but for its folder. Raises InputError, and KeyError."""
         design, known = _design(question), self._moments(question)
+        drive = question.choice("drive", DRIVES, DRIVES[0])
+        if drive == "muscles" and name not in BY_MUSCLES:
+            raise InputError("muscles do not drive this yet; choose joint moments")
+        if drive == "muscles":
+            require_muscles(question.choice("moments", known))
         if name != "fit":  # which may find a seat with which it turns
             turning(design)
         options: Mapping[str, Callable[[], Answer]] = {
@@ -134,6 +139,7 @@ class Answers:
                 "transmission": question.choice("transmission", TRANSMISSIONS, TRANSMISSIONS[0]),
                 "slope": question.value("slope", 0.0, _is_slope, f"a slope from -{STEEPEST:g} to {STEEPEST:g} %"),
             },
+            "optimise": lambda: {"drive": drive},
         }
         own = options.get(name, dict)()
         return partial(RUNS[name], design, known[question.choice("moments", known)], **own)

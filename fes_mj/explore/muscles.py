@@ -22,9 +22,8 @@ def by_muscles(design: Design, compared: Design, group: str, legs: int = 1) -> d
 
     "compared_W" is another design's power, None where it has none. Without power, "why" says so.
     """
-    if group not in GROUPS:
-        return {"why": f"no muscles of {group} are known, only of {' and '.join(GROUPS)}"}
     try:
+        require_muscles(group)
         turn = _solved(design, group)
     except InputError as error:
         return {"why": str(error)}
@@ -35,6 +34,12 @@ def by_muscles(design: Design, compared: Design, group: str, legs: int = 1) -> d
         "sd": np.round(all_legs(turn.stimulated.power, legs).std(axis=0), DIGITS),
         "numbers": shown(_numbers(turn)),
     }
+
+
+def require_muscles(group: str) -> None:
+    """Raise InputError for moments of whose riders no muscles are known."""
+    if group not in GROUPS:
+        raise InputError(f"no muscles of {group} are known, only of {' and '.join(GROUPS)}")
 
 
 @lru_cache(maxsize=16)

@@ -19,8 +19,11 @@ from fes_mj.linkage.design import Design
 from fes_mj.linkage.design_file import design_toml
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.torque_velocity import load_torque_velocity
+from fes_mj.muscles.riders import load_riders
+from fes_mj.muscles.timing import DUTY
 from fes_mj.optimization.findings import Findings
 from fes_mj.optimization.optimize import optimize
+from fes_mj.optimization.stimulated import MuscleDrive
 from fes_mj.riding.ride import Ride, Road
 from fes_mj.verification.case import VerificationCase
 from fes_mj.verification.suite import quick_groups, verify
@@ -55,16 +58,22 @@ def fit(design: Design, moments: JointMoments, state: Path) -> dict[str, Any]:
     return {"ok": True, "verdict": typeset(verdict), "design": content_of(result.design)}
 
 
-def optimise(design: Design, moments: JointMoments, state: Path) -> dict[str, Any]:
+def optimise(design: Design, moments: JointMoments, state: Path, *, drive: str) -> dict[str, Any]:
     """As `fes_mj optimize --start DESIGN --speeds-of DESIGN`: the best of its kind that moves the joints no faster."""
+    muscles = MuscleDrive(load_riders(moments.name), DUTY) if drive == "muscles" else None
     start = str(state / "start.toml")
     write_text(Path(start), design_toml(design))
     kind, findings = design.linkage.kind, _findings(state)
-    optimum = optimize(kind, moments, searches=SEARCHES, start=start, compared_with=start, findings=findings)
+    optimum = optimize(
+        kind, moments, searches=SEARCHES, start=start, compared_with=start, findings=findings, muscles=muscles
+    )
     verdict = f"Best design: {optimum.power:.2f} W, after {optimum.evaluations:,} evaluations."
+    if optimum.repair:
+        verdict += f" The design in hand did not keep the limits and was repaired first: {optimum.repair}."
     return {"ok": True, "verdict": verdict, "design": content_of(optimum.design) | {"name": f"{design.name}-optimised"}}
 
 
+BY_MUSCLES = {"optimise"}  # all others know joint moments alone
 RUNS: dict[str, Callable[..., dict[str, Any]]] = {run.__name__: run for run in (simulate, ride, fit, optimise)}
 
 

@@ -75,6 +75,8 @@ def test_the_model_loads_in_mujoco(answers: Answers, legs: int) -> None:
         ("simulate", {"legs": [1]}, r"legs is \[1\]"),
         ("ride", {"transmission": "chain"}, "transmission is 'chain'"),
         ("ride", {"slope": 45}, "slope is 45"),
+        ("ride", {"drive": "muscles"}, "muscles do not drive this yet"),
+        ("ride", {"drive": "legs"}, "drive is 'legs'"),
     ],
 )
 def test_runs_that_mean_nothing(answers: Answers, name: str, change: dict[str, Any], message: str) -> None:

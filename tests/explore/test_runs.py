@@ -14,7 +14,10 @@ from fes_mj.explore.dimensions import design_of
 from fes_mj.fit.seat import fit_seat, seat_text
 from fes_mj.linkage.design import Rider
 from fes_mj.moments.torque_velocity import load_torque_velocity
+from fes_mj.muscles.riders import load_riders
+from fes_mj.muscles.timing import DUTY
 from fes_mj.optimization.problem import make_problem
+from fes_mj.optimization.stimulated import MuscleDrive
 from fes_mj.riding.ride import Ride, Road
 
 D1, P1P2 = fes_mj.load_design("d1"), fes_mj.load_moments()
@@ -64,10 +67,21 @@ def test_optimise(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert runs.progress(tmp_path) is None
     monkeypatch.setattr(runs, "optimize", partial(fes_mj.optimize, budget=300))
     r1 = fes_mj.load_design("r1")
-    run = runs.optimise(r1, P1P2, tmp_path)
+    run = runs.optimise(r1, P1P2, tmp_path, drive="moments")
     best, problem = design_of(run["design"]), make_problem("crt", P1P2, start="r1", compared_with="r1")
     evaluation = problem.evaluate(problem.variables(best)[None])
     assert evaluation.feasible.all()
     assert f"{evaluation.power[0, 0]:.2f} W" in run["verdict"]
     assert evaluation.power[0, 0] >= problem.evaluate(problem.variables(r1)[None]).power[0, 0]
     assert runs.progress(tmp_path) == f"{evaluation.power[0, 0]:.2f} W so far; 4 of 4 searches are through"
+
+
+def test_optimise_for_muscles(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(runs, "optimize", partial(fes_mj.optimize, budget=12))
+    monkeypatch.setattr(runs, "SEARCHES", 1)
+    run = runs.optimise(fes_mj.load_design("r1"), P1P2, tmp_path, drive="muscles")
+    best, muscles = design_of(run["design"]), MuscleDrive(load_riders("p1p2"), DUTY)
+    problem = make_problem("crt", P1P2, start="r1", compared_with="r1", muscles=muscles)
+    evaluation = problem.evaluate(problem.variables(best)[None])
+    assert evaluation.feasible.all()
+    assert f"{evaluation.power[0, 0]:.2f} W" in run["verdict"]

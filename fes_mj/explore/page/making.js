@@ -11,7 +11,9 @@ export class Making {
     const { ok, verdict, layers = [], gaps = [], unknown = [] } = answer ?? { ok: true, verdict: "…" }, parts = this.parts;
     parts.verdict.textContent = verdict;
     parts.verdict.classList.toggle("bad", !ok);
-    parts.layers.textContent = layers.map((links, n) => `Layer ${n + 1}: ${links.join(", ")}.`).join(" ");
+    const lines = layers.map((links, n) => `Layer ${n + 1}: ${links.join(", ")}.`);
+    if (gaps.length) lines.push("Least distances, negative where parts pass beside each other:");
+    parts.layers.textContent = lines.join(" ");
     parts.gaps.replaceChildren(...gaps.map((gap) => this.row(gap)));
     parts.unknown.textContent = unknown.length ? `Not known, as the design has no [frame]: ${unknown.join(", ")}.` : "";
   }

@@ -234,7 +234,10 @@ function headline(byMoments) {
   const power = result?.power_mean_W, other = result ? result.compared_W : state.reference.turn.moments?.[state.moments]?.power_mean_W;
   const change = (100 * (power - other)) / Math.abs(other);
   const percent = Number.isFinite(change) && Math.abs(change) >= 0.05 ? `, ${change < 0 ? "−" : "+"}${Math.abs(change).toFixed(1)} %` : "";
-  $("against").textContent = Number.isFinite(other) ? `${state.reference.name}: ${other.toFixed(2)} W${percent}` : "";
+  $("against").textContent = [
+    state.drive === "muscles" && "by muscles",
+    Number.isFinite(other) && `${state.reference.name}: ${other.toFixed(2)} W${percent}`,
+  ].filter(Boolean).join("; ");
 }
 
 // ---- Curves
