@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from fes_mj.common.arrays import FloatArray
+from fes_mj.common.errors import InputError
 from fes_mj.common.units import RPM, turns_per_second
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.legs import TWO_LEGS
@@ -37,8 +38,14 @@ class Setting:
 
     @classmethod
     def best(cls, design: Design, riders: Riders, cadence: float, duty: float = DUTY) -> "Setting":
-        """Raises as rules.stimulated."""
-        return cls(design, cadence, duty, stimulated(BEST, riders, design, cadence, duty))
+        """Raises as rules.stimulated, and InputError where no group gives power."""
+        setting = cls(design, cadence, duty, stimulated(BEST, riders, design, cadence, duty))
+        if not setting.windows.width.any():
+            raise InputError(
+                f"{design.name}: at {cadence / RPM:.4g} rpm no muscle group gives power, however it is stimulated; "
+                "choose a slower cadence or a wider duty"
+            )
+        return setting
 
     @property
     def turn(self) -> MuscleTurn:

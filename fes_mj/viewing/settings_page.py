@@ -24,13 +24,15 @@ _COLUMNS = (
     "", "right on", "off", "left on", "off", "gives, W", "effort", "W per\neffort",
     f"{MISTIMED:g} deg\nearly, W", f"{MISTIMED:g} deg\nlate, W",
 )  # fmt: skip
+_LONGEST = 40  # letters of a name
 _INNER, _RING = 0.35, 0.2
 
 
 def settings_figure(settings: Settings) -> Figure:
     """The page: A4, landscape."""
     figure, main = Figure(figsize=A4), settings.main
-    title = f"{printable(main.design.name)}: when to stimulate at {main.cadence / RPM:.1f} rpm"
+    name = textwrap.shorten(printable(main.design.name), _LONGEST, placeholder=" ...")
+    title = f"{name}: when to stimulate at {main.cadence / RPM:.1f} rpm"
     figure.text(0.04, 0.95, literal(title), size=16, weight="bold")
     figure.text(0.04, 0.93, literal(_for_whom(settings)), size=9, color=FAINT, va="top", linespacing=1.4)
     _ring(clockwise(figure.add_axes((0.04, 0.5, 0.27, 0.34), projection="polar")), main)
@@ -107,8 +109,7 @@ def _table(axes: Axes, setting: Setting) -> None:
                 f"{right['power_W']:.1f} +- {right['power_sd_W']:.1f}",
                 f"{right['stimulation_effort']:.2f}",
                 "-" if per is None else f"{per:.1f}",
-                f"-{right['early_loss_W']:.1f}".replace("--", "+"),
-                f"-{right['late_loss_W']:.1f}".replace("--", "+"),
+                *("-" if per is None else f"{-right[f'{when}_loss_W']:.1f}" for when in ("early", "late")),
             ]
         )
     axes.axis("off")

@@ -2,10 +2,12 @@
 
 import csv
 import io
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from fes_mj.common.errors import InputError
 from fes_mj.common.units import RPM
 from fes_mj.linkage.design_file import load_design
 from fes_mj.linkage.turning import turning
@@ -76,3 +78,10 @@ def test_a_slower_crank_is_stimulated_later(riders):
     both = ((slow.width > 0) & (fast.width > 0))[:, 0, 0]
     lead = (slow.on - fast.on)[both, 0, 0] % 360
     assert np.all((lead > 0) & (lead < 180))
+
+
+def test_muscles_that_nothing_helps_are_refused(riders):
+    """They shorten by a tenth of a fibre a second at most, and pull with nothing wherever they would drive."""
+    slow = replace(riders, values=dict(riders.values) | {"max_speed": np.full(len(riders), 0.1)})
+    with pytest.raises(InputError, match="d1: at 100 rpm no muscle group gives power"):
+        Setting.best(D1, slow, 100 * RPM)
