@@ -154,6 +154,7 @@ WINNERS = {
     "agrees": "",
     "knee reversals": "d",
     **dict.fromkeys(("±1 mm, %", "legs ±5 cm, %"), ".1f"),
+    "limits of building it leaves": "",
 }
 
 
@@ -170,6 +171,7 @@ def markdown(content: dict[str, Any]) -> str:
             won["reversals"]["knee"],
             100 * won["manufacturing"]["turning"],
             100 * won["rider"]["turning"],
+            ", ".join(won["leaves"]) or "none",
         )
         for won in content["winners"]
     ]
@@ -181,7 +183,8 @@ def markdown(content: dict[str, Any]) -> str:
         "# Designs that beat the printed ones",
         "CMA-ES, with 5 mm of Grashof margin. Gain: over the identified printed design under the same recovered "
         "moments, with the standard deviation of the difference. Caution: how many were taken off in the search. Of "
-        "samples with lengths off by 1 mm, and with thigh and shank off by 5 cm: how many can turn.",
+        "samples with lengths off by 1 mm, and with thigh and shank off by 5 cm: how many can turn. The last column: "
+        "the limits of what can be built that a design leaves; [these designs](buildable.md) keep them.",
         Table("", WINNERS, winners).markdown().strip(),
         "# What bounds the power",
         "\n".join(f"- {name}: {text}" for name, text in content["bounds"].items()),
@@ -203,6 +206,7 @@ def record(winner: Winner, target: str, caution: float) -> dict[str, Any]:
         "reversals": dict(winner.reversals.items()),
         "manufacturing": winner.manufacturing._asdict(),
         "rider": winner.rider._asdict(),
+        "leaves": [*winner.build.broken()],
     }
 
 

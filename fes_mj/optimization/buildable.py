@@ -142,27 +142,35 @@ class Buildability:
             friction_loss_W=BearingLoss(forces, PLAIN).power,
         )
 
-    def doubts(self, limits: BuildLimits = COMMON) -> list[str]:
-        """In words, what of it leaves the limits."""
+    def broken(self, limits: BuildLimits = COMMON) -> dict[str, str]:
+        """What of it leaves the limits: name and words."""
         hole, swing, share = 1e3 * self.hole_distance_min_m, self.hip_swing_deg, self.extrapolated_share
-        sayings = (
-            (swing < limits.hip_swing_min - _AS_GOOD, f"the hip hardly moves, by {swing:.1f} deg"),
-            (share > limits.extrapolated_max, f"for {100 * share:.0f} % of the turn no moments are known"),
-            (
-                self.transmission_angle_min_deg < limits.transmission_angle_min - _AS_GOOD,
-                f"the transmission angle goes down to {self.transmission_angle_min_deg:.0f} deg",
+        angle, force, least = self.transmission_angle_min_deg, self.pin_force_max_N, self.clearance_min_m
+        sayings = {
+            "hip swing": (swing < limits.hip_swing_min - _AS_GOOD, f"the hip hardly moves, by {swing:.1f} deg"),
+            "known moments": (
+                share > limits.extrapolated_max,
+                f"for {100 * share:.2g} % of the turn no moments are known",
             ),
-            (
-                self.hole_distance_min_m < limits.hole_distance_min,
+            "transmission angle": (
+                angle < limits.transmission_angle_min - _AS_GOOD,
+                f"the transmission angle goes down to {angle:.0f} deg",
+            ),
+            "hole distance": (
+                hole < 1e3 * limits.hole_distance_min,
                 f"two holes of a link are {hole:.2g} mm apart: with the pedal in one of them its class has degenerated",
             ),
-            (self.pin_force_max_N > limits.pin_force_max, f"{self.pin_force_max_N:.0f} N act on a pin"),
-            (
-                self.clearance_min_m is not None and self.clearance_min_m < limits.clearance_min,
-                f"the least clearance is {1e3 * (self.clearance_min_m or 0.0):.1f} mm",
+            "pin force": (force > limits.pin_force_max, f"{force:.0f} N act on a pin"),
+            "clearance": (
+                least is not None and least < limits.clearance_min,
+                f"the least clearance is {1e3 * (least or 0.0):.1f} mm",
             ),
-        )
-        return [words for broken, words in sayings if broken]
+        }
+        return {name: words for name, (leaves, words) in sayings.items() if leaves}
+
+    def doubts(self, limits: BuildLimits = COMMON) -> list[str]:
+        """In words, what of it leaves the limits."""
+        return [*self.broken(limits).values()]
 
     @property
     def rows(self) -> list[tuple[str, str]]:
