@@ -15,7 +15,7 @@ from fes_mj.explore.muscles import by_muscles, require_muscles
 from fes_mj.explore.pose import plane
 from fes_mj.explore.runs import BY_MUSCLES, RUNS
 from fes_mj.explore.turn import turn
-from fes_mj.explore.uploads import Uploads, moments_of_bundle, read_upload
+from fes_mj.explore.uploads import Uploads, here, moments_of_bundle, read_upload
 from fes_mj.linkage.design import ARCHITECTURES, BRANCHES, SEXES, Design
 from fes_mj.linkage.design_file import DESIGNS, design_toml, load_design
 from fes_mj.linkage.legs import LEGS
@@ -44,7 +44,7 @@ class Answers:
         self.design, self.chosen, self.drive = design, moments.name, drive
         self.shared = {group: load_moments(group) for group in GROUPS} | {moments.name: moments}
         self.uploads = Uploads()
-        self.read: Callable[..., Any] = read_upload  # a server does it elsewhere
+        self.reader: Callable[..., Any] = here  # a server's is elsewhere
         questions = (
             self.start,
             self.turn,
@@ -114,11 +114,11 @@ class Answers:
 
     def open_design(self, question: Section) -> Answer:
         """A design file's design."""
-        return {"design": content_of(self.read(question, load_design))}
+        return {"design": content_of(read_upload(question, load_design, self.reader))}
 
     def open_moments(self, question: Section) -> Answer:
         """Take a file of joint moments, with those that it names, among the ones that the page knows."""
-        moments = self.read(question, moments_of_bundle)
+        moments = read_upload(question, moments_of_bundle, self.reader)
         name = self.uploads.add(_page(question), moments, self.shared)
         warnings = [misreading.text for misreading in moments.misreadings]
         return {"name": name, "moments": [*self._moments(question)], "warnings": warnings}

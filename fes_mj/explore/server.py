@@ -34,7 +34,6 @@ from fes_mj.common.console import complain, say
 from fes_mj.common.errors import InputError, MissingPartError, UnstableError
 from fes_mj.explore.answers import Answer, Answers, as_question
 from fes_mj.explore.runs import RUNS, progress
-from fes_mj.explore.uploads import read_upload
 
 PATIENCE = 10  # s, for the head of a request, then for its body, then for the next one on the same connection
 READING = 60  # s, for a file
@@ -60,7 +59,7 @@ def application(answers: Answers, token: str, hosts: set[str] | None) -> Starlet
     hosts: the names, in lower case, under which the page is reached; None for any. Runs answer line by line: objects
     with "progress", then the answer or an object with "error".
     """
-    answers.read = _read
+    answers.reader = _apart
 
     async def ask(request: Request) -> Response:
         here = hosts is None or request.url.hostname in hosts
@@ -86,15 +85,15 @@ def application(answers: Answers, token: str, hosts: set[str] | None) -> Starlet
     )
 
 
-def _read(*upload: Any) -> Any:
-    """As uploads.read_upload, in a process of its own that may take READING s: for the threads of questions."""
+def _apart(load: Callable[[Path], Any], path: Path) -> Any:
+    """As uploads.here, in a process of its own that may take READING s: for the threads of questions."""
 
-    async def apart() -> Any:
+    async def loaded() -> Any:
         with anyio.fail_after(READING):
-            return await anyio.to_process.run_sync(read_upload, *upload, cancellable=True)
+            return await anyio.to_process.run_sync(load, path, cancellable=True)
 
     try:
-        return anyio.from_thread.run(apart)
+        return anyio.from_thread.run(loaded)
     except TimeoutError:
         raise InputError(f"the file could not be read within {READING} s; leave out what is not needed of it") from None
 

@@ -47,11 +47,16 @@ class Uploads:
         return name
 
 
-def read_upload(question: Section, load: Callable[[Path], Loaded]) -> Loaded:
+def here(load: Callable[[Path], Loaded], path: Path) -> Loaded:
+    """Read a file at once."""
+    return load(path)
+
+
+def read_upload(question: Section, load: Callable[[Path], Loaded], reader: Callable[..., Loaded] = here) -> Loaded:
     """What the file in a question holds: its "name", its "text" and, by name, the texts of the files "beside" it.
 
-    They are read as files of this machine are, from a folder that holds nothing else. Raises InputError as `load`, and
-    for a name that is not a file's own.
+    They are read as files of this machine are, from a folder that holds nothing else; reader: as `here`. Raises
+    InputError as `load`, and for a name that is not a file's own.
     """
     name = question.value("name", None, _is_name, "the name of a file, without a folder")
     text = question.value("text", None, is_text, "the text of the file")
@@ -60,7 +65,7 @@ def read_upload(question: Section, load: Callable[[Path], Loaded]) -> Loaded:
         for own, content in {**beside, name: text}.items():
             (Path(folder) / own).write_bytes(content.encode(errors="surrogatepass"))
         try:
-            return load(Path(folder) / name)
+            return reader(load, Path(folder) / name)
         except InputError as error:
             raise InputError(str(error).replace(f"{folder}/", "")) from None
 

@@ -106,8 +106,9 @@ def test_a_refusal_shows_little_of_much(server: Server) -> None:
 
 
 @pytest.mark.process
-def test_a_file_that_is_never_read_to_its_end(server: Server, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Its reader is ended; meanwhile others are answered. Afterwards files are read as ever."""
+def test_a_file_that_is_never_read_to_its_end(server: Server, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Its reader is ended and leaves nothing behind; meanwhile others are answered. Then files are read as ever."""
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
     monkeypatch.setattr(server_module, "READING", 5)
     slow = {"name": "d.toml", "text": "a." * 60_000 + "a = 1"}  # tomllib takes the square of the dots
     with ThreadPoolExecutor(1) as pool:
@@ -117,6 +118,7 @@ def test_a_file_that_is_never_read_to_its_end(server: Server, monkeypatch: pytes
             400,
             {"error": "the file could not be read within 5 s; leave out what is not needed of it"},
         )
+    assert not [*tmp_path.iterdir()]
     monkeypatch.undo()
     _, saved = ask(server, "save", D1)
     assert ask(server, "open-design", saved) == (200, D1)
