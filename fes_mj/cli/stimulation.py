@@ -2,14 +2,14 @@
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 from cyclopts import Parameter
 
 from fes_mj.cli.drive import MusclesFirst
 from fes_mj.cli.options import Cadence, DesignName, Dims, MomentsOptions, PrintOptions, bounds, speed_at
-from fes_mj.cli.tables import with_error
+from fes_mj.cli.tables import span, with_error
 from fes_mj.common.console import print_table, say
 from fes_mj.common.errors import InputError, require_extra
 from fes_mj.common.units import RPM
@@ -104,9 +104,10 @@ def _print(settings: Settings) -> None:
     say("Effort: share of the turn x strength x largest force, per that of the measurement.")
 
 
-def _totals(content: dict[str, float]) -> list[tuple[str, str]]:
+def _totals(content: dict[str, Any]) -> list[tuple[str, str]]:
     return [
         ("power, W", with_error(content["power_two_legs_W"], 2 * content["power_sd_W"])),
+        ("after half an hour of it, W", span(content["power_two_legs_30_min_W"])),
         ("least power over the turn, W", f"{content['power_two_legs_min_W']:.1f}"),
         ("below zero, % of the turn", f"{100 * content['negative_share']:.0f}"),
         ("power of a leg per stimulation, W", f"{content['power_per_effort_W']:.2f}"),

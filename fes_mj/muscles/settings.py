@@ -18,6 +18,7 @@ from fes_mj.linkage.design import Design
 from fes_mj.linkage.legs import TWO_LEGS
 from fes_mj.linkage.turning import CRANK_ZERO, turning
 from fes_mj.muscles.anatomy import GROUPS, anatomy
+from fes_mj.muscles.fatigue import HALF_AN_HOUR, power_over_time, recoveries
 from fes_mj.muscles.power import MuscleTurn
 from fes_mj.muscles.prior import ramp
 from fes_mj.muscles.riders import Riders
@@ -92,6 +93,12 @@ class Setting:
         """`lost` by windows that are MISTIMED early, and late."""
         return self.lost(-MISTIMED), self.lost(MISTIMED)
 
+    @property
+    def tired(self) -> list[float]:
+        """Expected power of both legs after half an hour at this cadence, W: by the slower recovery, by the faster."""
+        after = [power_over_time(self.turn, np.array([HALF_AN_HOUR]), recovery) for recovery in recoveries().values()]
+        return sorted(2 * float(power.mean()) for power in after)
+
     def summary(self) -> dict[str, Any]:
         """What it gives and costs, as JSON names and units it."""
         together, both = self.power.sum(axis=0), self.both_legs
@@ -102,6 +109,7 @@ class Setting:
             "power_mean_W": float(together.mean()),
             "power_sd_W": float(together.std()),
             "power_two_legs_W": float(both.mean()),
+            "power_two_legs_30_min_W": self.tired,
             "power_two_legs_min_W": float(both.min()),
             "negative_share": float(np.mean(both < 0)),
             "stimulation_effort": float(self.effort.sum()),

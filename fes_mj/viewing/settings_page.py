@@ -37,7 +37,7 @@ def settings_figure(settings: Settings) -> Figure:
     figure.text(0.04, 0.93, literal(_for_whom(settings)), size=9, color=FAINT, va="top", linespacing=1.4)
     _ring(clockwise(figure.add_axes((0.04, 0.5, 0.27, 0.34), projection="polar")), main)
     _table(figure.add_axes((0.34, 0.625, 0.63, 0.23)), main)
-    figure.text(0.345, 0.50, literal(_totals(main)), size=9, va="bottom", linespacing=1.6)
+    figure.text(0.345, 0.50, literal(_totals(main)), size=9, va="bottom", linespacing=1.5)
     _turn(figure.add_axes((0.06, 0.145, 0.25, 0.27)), main)
     _by_cadence(figure.add_axes((0.38, 0.145, 0.29, 0.27)), settings)
     _powers(figure.add_axes((0.74, 0.145, 0.23, 0.27)), settings)
@@ -58,16 +58,19 @@ def _for_whom(settings: Settings) -> str:
 
 def _totals(setting: Setting) -> str:
     content = setting.summary()
-    return (
+    low, high = content["power_two_legs_30_min_W"]
+    lines = (
         f"Both legs: {content['power_two_legs_W']:.1f} W, one leg {content['power_mean_W']:.1f} +- "
-        f"{content['power_sd_W']:.1f} W. Least over the turn {content['power_two_legs_min_W']:.1f} W, below zero for "
-        f"{100 * content['negative_share']:.0f} % of it.\n"
-        f"Stimulation: {content['stimulation_effort']:.2f} of the measurement's; "
-        f"{content['power_per_effort_W']:.1f} W of a leg for as much as the measurement's.\n"
+        f"{content['power_sd_W']:.1f} W; both after half an hour {low:.0f} to {high:.0f} W.",
+        f"Least over the turn {content['power_two_legs_min_W']:.1f} W, below zero for "
+        f"{100 * content['negative_share']:.0f} % of it.",
+        f"Stimulation: {content['stimulation_effort']:.2f} of the measurement's; {content['power_per_effort_W']:.1f} W "
+        "of a leg for as much as the measurement's.",
         f"{MISTIMED:g} deg early costs {100 * content['early_loss_share']:.0f} %, late "
         f"{100 * content['late_loss_share']:.0f} % of the power. No window is wider than {360 * setting.duty:.0f} deg "
-        f"({100 * setting.duty:.0f} % of the turn), as asked."
+        f"({100 * setting.duty:.0f} % of the turn), as asked.",
     )
+    return "\n".join(lines)
 
 
 def _notes(settings: Settings) -> str:

@@ -14,13 +14,14 @@ from fes_mj.common.style import BAD, FAINT, INK, MOMENTS, SERIES
 from fes_mj.linkage.design_file import DESIGNS, load_design
 from fes_mj.muscles.anatomy import GROUPS
 from fes_mj.muscles.by_angle import Gains
+from fes_mj.muscles.fatigue import recoveries
 from fes_mj.muscles.power import best_turn
 from fes_mj.muscles.riders import load_riders
 from fes_mj.muscles.settings import Setting
 from fes_mj.muscles.timing import ANGLES
 from fes_mj.viewing.charts import write_figure
 from studies.muscles.gains import MEASURED_W, SIX_BARS, WIDTHS, known_gains, paper_gains
-from studies.muscles.use import MINUTES, recoveries, tired
+from studies.muscles.use import MINUTES, tired
 
 NAMES = [name.upper() for name in SIX_BARS]
 Rows = Sequence[Mapping[str, Any]]
@@ -78,7 +79,7 @@ def gains(tables: Mapping[str, Rows]) -> Figure:
     colours = (SERIES[0], SERIES[2], FAINT, SERIES[1])
     for axes, title in zip(panels, ("Gains at the paper's gears", "Gains at 60 rpm"), strict=True):
         for row in tables[title]:
-            if row["group"] == "p1p2" and row["timing"] in rules:
+            if row["group"] == "p1p2" and row["timing"] in rules and row["design"] in NAMES:
                 rule = rules.index(row["timing"])
                 place = NAMES.index(row["design"]) + 0.18 * (rule - 1.5)
                 ends = [row[f"gain {end} %"] for end in (5, 50, 95)]

@@ -10,7 +10,7 @@ import numpy as np
 from fes_mj.common.arrays import FloatArray
 from fes_mj.linkage.design_file import DESIGNS, load_design
 from fes_mj.moments.joint_moments import GROUPS as RIDER_GROUPS
-from fes_mj.muscles.fatigue import RECOVERY, force_factor, power_over_time, recovery_for
+from fes_mj.muscles.fatigue import AT, HALF_AN_HOUR, LEFT, force_factor, power_over_time, recoveries
 from fes_mj.muscles.power import MuscleTurn, best_turn
 from fes_mj.muscles.riders import Riders, load_riders
 from studies.muscles.gains import WIDTHS, probability, quantiles
@@ -18,8 +18,6 @@ from studies.muscles.unknowns import power
 
 CADENCES = (20, 30, 40, 50, 60, 70, 80, 90, 100)  # rpm
 MINUTES = np.arange(0.0, 30.5, 0.5)
-# -67 % after 180 contractions at a duty of 50 %, of paralysed quadriceps (Bickel et al. 2004, JRRD 41:33)
-LEFT, AT_DUTY = 0.33, 0.5
 
 
 def by_cadence(riders: Riders) -> FloatArray:
@@ -50,11 +48,6 @@ def best_cadence_rows() -> Iterator[tuple[Any, ...]]:
             yield group, name.upper(), cadence, 2 * float(best[name].mean()), *quantiles(gains), probability(gains > 1)
 
 
-def recoveries() -> dict[str, float]:
-    """Time constants of recovery, s: as published, and as it takes for what was measured."""
-    return {"published": RECOVERY, "as Bickel measured": recovery_for(LEFT, AT_DUTY)}
-
-
 def tired(turn: MuscleTurn, recovery: float) -> FloatArray:
     """Expected power of both legs at MINUTES, W."""
     return np.asarray(2 * power_over_time(turn, 60 * MINUTES, recovery)[..., 0].mean(axis=1))
@@ -69,7 +62,7 @@ def fatigue_rows() -> Iterator[tuple[Any, ...]]:
             active = turn.activation.mean(axis=-1)[..., 0]
             for title, recovery in recoveries().items():
                 course = tired(turn, recovery)
-                factors = force_factor(active, 1800.0, recovery).mean(axis=1)
+                factors = force_factor(active, HALF_AN_HOUR, recovery).mean(axis=1)
                 at = [float(course[int(np.searchsorted(MINUTES, minute))]) for minute in (0, 2, 30)]
                 share = float(windows.width.max() / 360)
                 yield group, name.upper(), width, title, share, *at, float(course.mean()), *map(float, factors)
@@ -78,4 +71,4 @@ def fatigue_rows() -> Iterator[tuple[Any, ...]]:
 def fatigue_check() -> Iterator[tuple[Any, ...]]:
     """What the two recoveries leave at a duty of a half, beside what was measured."""
     for title, recovery in recoveries().items():
-        yield title, recovery, 100 * (float(force_factor(AT_DUTY, 1e6, recovery)) - 1), 100 * (LEFT - 1)
+        yield title, recovery, 100 * (float(force_factor(AT, 1e6, recovery)) - 1), 100 * (LEFT - 1)

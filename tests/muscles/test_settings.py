@@ -12,6 +12,7 @@ from fes_mj.common.units import RPM
 from fes_mj.linkage.design_file import load_design
 from fes_mj.linkage.turning import turning
 from fes_mj.muscles.anatomy import GROUPS, anatomy
+from fes_mj.muscles.fatigue import FLOOR, HALF_AN_HOUR, force_factor
 from fes_mj.muscles.power import muscle_turn
 from fes_mj.muscles.settings import MISTIMED, Setting, Settings
 
@@ -85,3 +86,11 @@ def test_muscles_that_nothing_helps_are_refused(riders):
     slow = replace(riders, values=dict(riders.values) | {"max_speed": np.full(len(riders), 0.1)})
     with pytest.raises(InputError, match="d1: at 100 rpm no muscle group gives power"):
         Setting.best(D1, slow, 100 * RPM)
+
+
+def test_half_an_hour_leaves_what_fatigue_says(settings):
+    low, high = settings.main.summary()["power_two_legs_30_min_W"]
+    fresh = settings.main.summary()["power_two_legs_W"]
+    assert FLOOR * fresh < low < high < fresh
+    factor = force_factor(settings.main.turn.activation.mean(axis=-1), HALF_AN_HOUR)
+    assert high == pytest.approx(2 * np.sum(factor * settings.main.turn.group_power, axis=0).mean())
