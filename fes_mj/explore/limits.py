@@ -67,4 +67,4 @@ def _sentence(constraint: Constraint, value: float) -> str:
     unit, factor = ("cm", 100.0) if constraint.unit == "m" else (constraint.unit, 1.0)
     bound = "at least" if constraint.at_least else "at most"
     words, shown = MARKS[constraint.name].words, typeset(f"{factor * value:.2f}")
-    return f"{words} is {shown} {unit}; it must be {bound} {factor * constraint.limit:g}"
+    return f"{words} is {shown} {unit}; it must be {bound} {factor * constraint.limit:g} {unit}"

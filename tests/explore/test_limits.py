@@ -39,6 +39,6 @@ def test_a_linkage_that_does_not_turn_has_lengths_still() -> None:
     linkage = fes_mj.load_design("d1").linkage
     design = replaced(fes_mj.load_design("d1"), {"R2": 0.25})
     margin = 100 * (linkage.rocker + linkage.coupler - 0.25 - abs(linkage.pivot_to_crank))
-    assert f"the Grashof margin is −{-margin:.2f} cm; it must be at least 0.5" in [  # noqa: RUF001
+    assert f"the Grashof margin is −{-margin:.2f} cm; it must be at least 0.5 cm" in [  # noqa: RUF001
         limit["text"] for limit in broken(design, None)
     ]
