@@ -29,6 +29,7 @@ def main() -> None:
         page.fill("#number-R2", str(CRANK))
         page.press("#number-R2", "Enter")
         page.wait_for_selector("body[data-updates='2']")
+        page.wait_for_selector("#making .verdict:has-text('apart')")
         page.fill("#angle", str(ANGLE))
         page.evaluate("document.activeElement.blur()")
         page.screenshot(path=PICTURE)
