@@ -163,7 +163,8 @@ def searches() -> dict[str, np.ndarray]:
             f"search, {linkage}{words}": (DESIGNS, partial(searched, kind, make_problem(linkage, MOMENTS)))
             for linkage in ("trt", "crt", "cdt")
             for words, kind in (("", Search), (", all computed", Thorough))
-        }
+        },
+        rounds=3,
     )
 
 

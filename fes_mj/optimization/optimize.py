@@ -107,7 +107,7 @@ class Optimum(Brief):
 
     @property
     def limit_rows(self) -> list[tuple[str, str, str, str]]:
-        """Constraint, value, limit and whether it is active, as text."""
+        """Constraint, value, limit and whether it is active, as text; without those on what a four-bar lacks."""
         values, margins = self._evaluation.values[0], self._evaluation.margins[0]
         return [
             (
@@ -117,6 +117,7 @@ class Optimum(Brief):
                 "active" if abs(margin) < _AT_EDGE * c.scale else "",
             )
             for c, value, margin in zip(self.problem.constraints, values, margins, strict=True)
+            if np.isfinite(value)
         ]
 
     @cached_property
