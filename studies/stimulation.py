@@ -15,7 +15,7 @@ from fes_mj.common.writing import write_text
 from fes_mj.linkage.design_file import DESIGNS, load_design
 from fes_mj.moments.joint_moments import GROUPS
 from fes_mj.muscles.riders import load_riders
-from fes_mj.muscles.settings import MISTIMED, Setting
+from fes_mj.muscles.setting import MISTIMED, Setting
 from fes_mj.riding.stimulation import CORE, LEAST_SHARE, stimulation
 
 PATH = Path(__file__).parents[1] / "results" / "stimulation.md"

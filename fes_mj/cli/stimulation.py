@@ -1,6 +1,5 @@
 """`fes_mj stimulation`: settings of a stimulator for a design and seat, or where moments drive its crank."""
 
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -8,19 +7,18 @@ import numpy as np
 from cyclopts import Parameter
 
 from fes_mj.cli.drive import MusclesFirst
+from fes_mj.cli.effectiveness import by_moments
 from fes_mj.cli.options import Cadence, DesignName, Dims, MomentsOptions, PrintOptions, bounds, speed_at
 from fes_mj.cli.tables import span, with_error
 from fes_mj.common.console import print_table, say
 from fes_mj.common.errors import InputError, require_extra
 from fes_mj.common.units import RPM
 from fes_mj.common.writing import PAGES, require_writable, write_text
-from fes_mj.linkage.design import Design
 from fes_mj.linkage.design_file import load_design
 from fes_mj.linkage.turning import CRANK_ZERO
 from fes_mj.muscles.rules import BEST
-from fes_mj.muscles.settings import MISTIMED, Settings
-from fes_mj.muscles.timing import DUTY
-from fes_mj.riding.stimulation import CORE, Window, stimulation as find_windows, summary, table_csv
+from fes_mj.muscles.setting import MISTIMED
+from fes_mj.muscles.settings import Settings
 
 _SLOWEST, _STEP, _APART = 30, 10, 5  # rpm: of the cadences below the main one, by which a start passes
 
@@ -57,7 +55,7 @@ def stimulation(
         require_writable(page, "the page", PAGES, inputs)
         require_extra("report", "matplotlib")
     if drive.drive == "moments":
-        _by_moments(loaded, cadence, whose, drive, csv, pages, options)
+        by_moments(loaded, cadence, whose, drive, csv, pages, options)
         return
     if drive.timing != BEST:
         raise InputError(
@@ -130,58 +128,3 @@ def _by_cadence(settings: Settings) -> list[tuple[str, ...]]:
 def _span(record: dict[str, float | None], unit: str) -> str:
     on, off = record[f"on_{unit}"], record[f"off_{unit}"]
     return "-" if on is None or off is None else f"{on:.0f} to {off:.0f}"
-
-
-def _by_moments(
-    design: Design,
-    cadence: list[float] | None,
-    whose: MomentsOptions,
-    drive: MusclesFirst,
-    csv: Path | None,
-    pages: Sequence[Path],
-    options: PrintOptions,
-) -> None:
-    """Windows of the linkage alone."""
-    given = {
-        "--cadence": cadence,
-        "--moments": whose.moments,
-        "--group": whose.group,
-        "--muscles": drive.muscles,
-        "--duty": drive.duty != DUTY,
-        "--timing": drive.timing != BEST,
-    }
-    if said := [flag for flag, value in given.items() if value]:
-        raise InputError(
-            f"{said[0]}: where moments drive the crank depends on the linkage alone; leave it out, or use --drive "
-            "muscles"
-        )
-    windows = find_windows(design)
-    if pages:
-        from fes_mj.viewing.charts import write_figure
-        from fes_mj.viewing.rings import windows_figure
-
-        for page in pages:
-            write_figure(page, windows_figure, design, windows)
-    if csv:
-        write_text(csv, table_csv(design, windows))
-    options.show(lambda: summary(design, windows), lambda: _print_moments(design, windows), windows=csv)
-    for page in pages:
-        options.name_files(page=page)
-
-
-def _print_moments(design: Design, windows: list[Window]) -> None:
-    rows = []
-    for record in (window.record(design) for window in windows if window.leg == "right"):
-        spans = (
-            f"{on:.0f} to {off:.0f}" for on, off in (record[f"{w}_deg"] for w in ("works", "works_from_tdc", "core"))
-        )
-        works, from_top, core = spans
-        name = f"{record['muscle']} ({record['moment']})"
-        rows.append(
-            (name, f"{works} ({record['width_deg']:.0f})", from_top, f"{core} ({record['core_width_deg']:.0f})")
-        )
-    columns = ("muscle", "drives the crank (width)", "from top dead centre", "core of it (width)")
-    print_table(f"{design.name}, right leg; crank angles in deg", columns, rows)
-    say(f"0: {CRANK_ZERO}; the left leg's are 180 deg later.")
-    say(f"Core: the joint moves at least {CORE:g} times as fast per crank angle as at best in the window.")
-    say("A stimulated muscle answers late and weakens with speed: --drive muscles says when to stimulate.")

@@ -22,6 +22,7 @@ from fes_mj.moments.uncertainty import power_weights
 from fes_mj.muscles.anatomy import GROUPS
 from fes_mj.muscles.geometry import Flexion
 from fes_mj.muscles.passive import passive_moments
+from fes_mj.muscles.posterior import Posterior
 from fes_mj.muscles.prior import priors, quantile, ramp
 from fes_mj.muscles.pull import pull
 from fes_mj.muscles.residual import Residual
@@ -35,7 +36,6 @@ _POINTS = 120  # crank angles: against three times as many a power changes by 1e
 _TURN = np.arange(_POINTS) * (2 * np.pi / _POINTS)  # from the most bent knee
 _BLOCK = 200  # riders at once
 STAGES = 5
-_LEAST_EFFECTIVE = 100  # riders by whose spread the next ones are proposed
 DRAWS = 10  # of the strengths of each
 _FROM_PRIOR = 0.1  # share of the proposals, so that no weight is large where nobody looked
 
@@ -151,36 +151,6 @@ def _log_density(apart: FloatArray, covariance: FloatArray) -> FloatArray:
     """Of Gaussian numbers this far from their means, shape (riders, rows), up to a constant."""
     solved = np.linalg.solve(covariance, apart[..., None])[..., 0]
     return np.asarray(-(np.sum(apart * solved, axis=-1) + np.linalg.slogdet(covariance)[1]) / 2)
-
-
-class Posterior(NamedTuple):
-    """Weighed riders; log_weights: up to a constant, -inf for one that cannot be, shape (riders,)."""
-
-    riders: Riders
-    log_weights: FloatArray
-
-    @property
-    def weights(self) -> FloatArray:
-        return np.asarray(np.exp(self.log_weights - self.log_weights.max()))
-
-    @property
-    def effective(self) -> float:
-        """How many independent riders the weighed ones are worth."""
-        return float(self.weights.sum() ** 2 / np.sum(self.weights**2))
-
-    def members(self, count: int) -> Riders:
-        """So many riders, each as likely as any other: at even steps of the weights' sum."""
-        steps, weights = (np.arange(count) + 0.5) / count, self.weights
-        return self.riders.taken(np.searchsorted(np.cumsum(weights) / weights.sum(), steps))
-
-    def flattened(self, enough: float = _LEAST_EFFECTIVE) -> "Posterior":
-        """The same with weights so flat that enough riders count to say where to look, or half of those that can be."""
-        flat, enough = self, min(enough, np.isfinite(self.log_weights).sum() / 2)
-        power = 1.0
-        while flat.effective < enough:
-            power *= 0.8
-            flat = self._replace(log_weights=power * (self.log_weights - self.log_weights.max()))
-        return flat
 
 
 def identify(

@@ -1,149 +1,22 @@
-"""Settings of a stimulator for one design and seat: best windows by cadence, what a group gives and costs, tolerance.
+"""Settings of a stimulator for one design and seat, by cadence: as JSON and as a table.
 
-Nobody's stimulation follows a cadence by itself: windows are those before delay and activation, to be set as they are.
+Windows are those of the stimulation itself, before delay and activation, to be set as they are.
 """
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from fes_mj.common.arrays import FloatArray
-from fes_mj.common.errors import InputError
-from fes_mj.common.units import RPM, turns_per_second
 from fes_mj.linkage.design import Design
-from fes_mj.linkage.legs import TWO_LEGS
 from fes_mj.linkage.turning import CRANK_ZERO, turning
-from fes_mj.muscles.anatomy import GROUPS, anatomy
-from fes_mj.muscles.fatigue import HALF_AN_HOUR, power_over_time, recoveries
-from fes_mj.muscles.power import MuscleTurn
 from fes_mj.muscles.prior import ramp
 from fes_mj.muscles.riders import Riders
-from fes_mj.muscles.rules import BEST, Stimulated, stimulated
-from fes_mj.muscles.timing import DUTY, Windows, activation
-
-MISTIMED = 20.0  # deg, by which windows are shifted to see what that costs
-
-
-@dataclass(frozen=True, eq=False)
-class Setting:
-    """The best windows of a design at one cadence (rad/s); duty: the limit that the user keeps."""
-
-    design: Design
-    cadence: float
-    duty: float
-    stimulated: Stimulated
-
-    @classmethod
-    def best(cls, design: Design, riders: Riders, cadence: float, duty: float = DUTY) -> "Setting":
-        """Raises as rules.stimulated, and InputError where no group gives power."""
-        setting = cls(design, cadence, duty, stimulated(BEST, riders, design, cadence, duty))
-        if not setting.windows.width.any():
-            raise InputError(
-                f"{design.name}: at {cadence / RPM:.4g} rpm no muscle group gives power, however it is stimulated; "
-                "choose a slower cadence or a wider duty"
-            )
-        return setting
-
-    @property
-    def turn(self) -> MuscleTurn:
-        assert self.stimulated.turn is not None  # the best rule has one
-        return self.stimulated.turn
-
-    @property
-    def windows(self) -> Windows:
-        """Shape (groups, 1, 1): the same for all riders."""
-        assert self.stimulated.windows is not None
-        return self.stimulated.windows
-
-    @property
-    def riders(self) -> Riders:
-        return self.stimulated.riders
-
-    @cached_property
-    def power(self) -> FloatArray:
-        """Mean power of each group, one leg, W, shape (groups, members)."""
-        return self.turn.group_power[..., 0]
-
-    @cached_property
-    def both_legs(self) -> FloatArray:
-        """Expected power of both legs over the turn, W, shape (angles,)."""
-        return np.asarray(self.turn.two_legs[:, 0].mean(axis=0))
-
-    @cached_property
-    def effort(self) -> FloatArray:
-        """Share of the turn x strength x largest force of each group, per that of the measurement, shape (groups,)."""
-        muscles = anatomy()
-        force = self.riders.strength(muscles)[..., 0, 0] * muscles.force[:, None]
-        strength = np.stack([force[part].sum(axis=0).mean() for part in muscles.of_group])
-        measured = self.riders.windows()[..., 1].mean(axis=1)
-        return np.asarray(self.windows.width[:, 0, 0] * strength / float(measured @ strength))
-
-    def lost(self, degrees: float) -> FloatArray:
-        """Expected power of each group that windows later by so much lose, one leg, W, shape (groups,)."""
-        later = activation(self.windows.shifted(degrees), self.riders, self.cadence)
-        later = later * (self.windows.width > 0)[..., None]
-        return np.asarray((self.power - MuscleTurn(self.turn.pulled, later).group_power[..., 0]).mean(axis=1))
-
-    @cached_property
-    def early_late(self) -> tuple[FloatArray, FloatArray]:
-        """`lost` by windows that are MISTIMED early, and late."""
-        return self.lost(-MISTIMED), self.lost(MISTIMED)
-
-    @property
-    def tired(self) -> list[float]:
-        """Expected power of both legs after half an hour at this cadence, W: by the slower recovery, by the faster."""
-        after = [power_over_time(self.turn, np.array([HALF_AN_HOUR]), recovery) for recovery in recoveries().values()]
-        return sorted(2 * float(power.mean()) for power in after)
-
-    def summary(self) -> dict[str, Any]:
-        """What it gives and costs, as JSON names and units it."""
-        together, both = self.power.sum(axis=0), self.both_legs
-        early, late = (float(lost.sum() / together.mean()) for lost in self.early_late)
-        return {
-            "cadence_rpm": self.cadence / RPM,
-            "cadence_Hz": turns_per_second(self.cadence),
-            "power_mean_W": float(together.mean()),
-            "power_sd_W": float(together.std()),
-            "power_two_legs_W": float(both.mean()),
-            "power_two_legs_30_min_W": self.tired,
-            "power_two_legs_min_W": float(both.min()),
-            "negative_share": float(np.mean(both < 0)),
-            "stimulation_effort": float(self.effort.sum()),
-            "power_per_effort_W": float(together.mean() / self.effort.sum()),
-            "early_loss_share": early,
-            "late_loss_share": late,
-        }
-
-    def records(self) -> Iterator[dict[str, Any]]:
-        """A row for each group and leg, as files name and unit it; angles None where a group is not stimulated."""
-        top = turning(self.design).top_dead_centre
-        for number, group in enumerate(GROUPS):
-            width = float(self.windows.width[number, 0, 0])
-            power, effort = self.power[number], float(self.effort[number])
-            for leg in TWO_LEGS:
-                on = float(self.windows.on[number, 0, 0]) + math.degrees(leg.lag)
-                ends = [on % 360, (on + width) % 360] if width else [None, None]
-                from_top = [None if end is None else (end - math.degrees(top)) % 360 for end in ends]
-                yield {
-                    "cadence_rpm": self.cadence / RPM,
-                    "muscle": group,
-                    "leg": leg.prefix.removesuffix("_"),
-                    "on_deg": ends[0],
-                    "off_deg": ends[1],
-                    "on_from_tdc_deg": from_top[0],
-                    "off_from_tdc_deg": from_top[1],
-                    "duty": width / 360,
-                    "power_W": float(power.mean()),
-                    "power_sd_W": float(power.std()),
-                    "stimulation_effort": effort,
-                    "power_per_effort_W": float(power.mean()) / effort if effort else None,
-                    "early_loss_W": float(self.early_late[0][number]),
-                    "late_loss_W": float(self.early_late[1][number]),
-                }
+from fes_mj.muscles.rules import BEST
+from fes_mj.muscles.setting import MISTIMED, Setting
+from fes_mj.muscles.timing import DUTY
 
 
 @dataclass(frozen=True, eq=False)

@@ -20,7 +20,8 @@ from fes_mj.moments.measurement_file import read_tricycle
 from fes_mj.moments.reference_tricycle import ReferenceTricycle
 from fes_mj.moments.tables import load_table
 from fes_mj.muscles.anatomy import GROUPS, anatomy
-from fes_mj.muscles.identification import Candidates, Posterior, weighed
+from fes_mj.muscles.identification import Candidates, weighed
+from fes_mj.muscles.posterior import Posterior
 from fes_mj.muscles.prior import drawn, priors
 from fes_mj.muscles.pull import pull
 from fes_mj.muscles.recovery import gains

@@ -15,7 +15,8 @@ from fes_mj.linkage.legs import all_legs
 from fes_mj.linkage.turning import CRANK_ZERO, turning
 from fes_mj.muscles.anatomy import GROUPS
 from fes_mj.muscles.prior import ramp
-from fes_mj.muscles.settings import MISTIMED, Setting, Settings
+from fes_mj.muscles.setting import MISTIMED, Setting
+from fes_mj.muscles.settings import Settings
 from fes_mj.muscles.timing import ANGLES
 from fes_mj.viewing.rings import clockwise, mark_top_dead_centre
 

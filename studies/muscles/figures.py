@@ -17,7 +17,7 @@ from fes_mj.muscles.by_angle import Gains
 from fes_mj.muscles.fatigue import recoveries
 from fes_mj.muscles.power import best_turn
 from fes_mj.muscles.riders import load_riders
-from fes_mj.muscles.settings import Setting
+from fes_mj.muscles.setting import Setting
 from fes_mj.muscles.timing import ANGLES
 from fes_mj.viewing.charts import write_figure
 from studies.muscles.gains import MEASURED_W, SIX_BARS, WIDTHS, known_gains, paper_gains

@@ -18,7 +18,7 @@ from fes_mj.muscles.prior import drawn
 from fes_mj.muscles.pull import pull
 from fes_mj.muscles.riders import Riders, load_riders
 from fes_mj.muscles.rules import RULES, stimulated
-from fes_mj.muscles.settings import Setting
+from fes_mj.muscles.setting import Setting
 from fes_mj.muscles.timing import ANGLES, DUTY, activation, best_windows
 from fes_mj.muscles.trial import ENDS
 from fes_mj.paper.evidence import load_evidence, of_group

@@ -4,7 +4,8 @@ import pytest
 from fes_mj.linkage.joints import PerJoint
 from fes_mj.moments.fourier import fourier
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
-from fes_mj.muscles.identification import Candidates, Posterior, coefficients, identify
+from fes_mj.muscles.identification import Candidates, coefficients, identify
+from fes_mj.muscles.posterior import Posterior
 from fes_mj.muscles.power import muscle_turn
 from fes_mj.muscles.prior import drawn, priors, quantile
 from fes_mj.muscles.riders import Riders, load_riders

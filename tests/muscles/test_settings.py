@@ -14,7 +14,8 @@ from fes_mj.linkage.turning import turning
 from fes_mj.muscles.anatomy import GROUPS, anatomy
 from fes_mj.muscles.fatigue import FLOOR, HALF_AN_HOUR, force_factor
 from fes_mj.muscles.power import muscle_turn
-from fes_mj.muscles.settings import MISTIMED, Setting, Settings
+from fes_mj.muscles.setting import MISTIMED, Setting
+from fes_mj.muscles.settings import Settings
 
 D1 = load_design("d1")
 
