@@ -55,7 +55,7 @@ def test_a_population_has_the_values_of_its_designs() -> None:
 
 @pytest.mark.parametrize(
     ("name", "words"),
-    [("r2", ["transmission angle goes down to 7", "N act on a pin"]), ("d1", ["21 deg"]), ("d2", ["25 deg", "3.8 %"])],
+    [("r2", ["transmission angle goes down to 7", "N act on a pin"]), ("d1", ["21 deg"]), ("d2", ["25 deg", "3.6 %"])],
 )
 def test_the_papers_designs_leave_the_limits(name: str, words: list[str]) -> None:
     """As estimated outside the project: 7, 21 and 25 deg, D2 3.6 % outside."""
