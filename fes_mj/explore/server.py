@@ -40,6 +40,7 @@ READING = 60  # s, for a file
 LARGEST_QUESTION = 16 * 2**20  # bytes: more than ten minutes of a trial as OpenSim writes it
 LONGEST_SENTENCE = 1000  # characters of a refusal, which may show what was sent
 CONNECTIONS = 200  # at a time
+RUNNING, WAITING = "running\N{HORIZONTAL ELLIPSIS}", "waits for other runs to end"
 TICK = 0.5  # s between two looks at how far a run has come
 HEADERS = {
     "Cache-Control": "no-store",
@@ -90,7 +91,8 @@ def _apart(load: Callable[[Path], Any], path: Path) -> Any:
 
     async def loaded() -> Any:
         with anyio.fail_after(READING):
-            return await anyio.to_process.run_sync(load, path, cancellable=True)
+            own = anyio.CapacityLimiter(1)  # runs, of which so many go on as there are cores, hold up no file
+            return await anyio.to_process.run_sync(load, path, cancellable=True, limiter=own)
 
     try:
         return anyio.from_thread.run(loaded)
@@ -102,10 +104,13 @@ async def _lines(run: Callable[[Path], Answer]) -> AsyncIterator[bytes]:
     """Progress of a run in a process of its own, and its answer; the process ends when nobody listens any more."""
     with TemporaryDirectory() as folder:
         work = asyncio.create_task(anyio.to_process.run_sync(run, Path(folder), cancellable=True))
+        going, said = anyio.to_process.current_default_process_limiter(), RUNNING
         try:
             while not (await asyncio.wait([work], timeout=TICK))[0]:
-                if text := progress(Path(folder)):
+                text = (progress(Path(folder)) or RUNNING) if work in going.statistics().borrowers else WAITING
+                if text != said:
                     yield as_json({"progress": text}) + b"\n"
+                said = text
             yield as_json(work.result())
         except Exception as error:
             _LOG.error("a run failed", exc_info=error)

@@ -2,6 +2,7 @@
 
 import http.client
 import json
+import os
 import socket
 import threading
 import time
@@ -174,6 +175,10 @@ def _count(folder: Path) -> dict[str, Any]:
     return {}
 
 
+def _nothing(_: Path) -> dict[str, Any]:
+    return {}
+
+
 @pytest.mark.process
 def test_a_run_ends_with_the_one_who_waits_for_it(
     server: Server, answers: Answers, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
@@ -194,6 +199,31 @@ def test_a_run_ends_with_the_one_who_waits_for_it(
     count = alive.read_text()
     time.sleep(0.2)
     assert alive.read_text() == count
+
+
+@pytest.mark.process
+def test_runs_wait_for_each_other_and_files_for_none(
+    server: Server, answers: Answers, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    monkeypatch.setattr(answers, "run", lambda *_: _count)
+    running = [http.client.HTTPConnection("127.0.0.1", port(server), timeout=60) for _ in range(os.cpu_count() or 8)]
+    for connection in running:
+        connection.request("POST", "/simulate", "{}", {"X-Token": token(server)})
+    deadline = time.monotonic() + 60
+    while not (tmp_path / "alive").exists():
+        assert time.monotonic() < deadline
+        time.sleep(0.05)
+    _, saved = ask(server, "save", D1)
+    assert ask(server, "open-design", saved) == (200, D1)
+    monkeypatch.setattr(answers, "run", lambda *_: _nothing)
+    with ThreadPoolExecutor(1) as pool:
+        last = pool.submit(request, server, "POST", "/ride", "{}")
+        time.sleep(1)  # it waits, as the rest of its answer shows
+        for connection in running:
+            connection.close()
+        first, *_, outcome = last.result()[1].splitlines()
+        assert (first, outcome) == ('{"progress":"waits for other runs to end"}', "{}")
 
 
 def test_a_port_in_use_is_one_message(server: Server, answers: Answers) -> None:
