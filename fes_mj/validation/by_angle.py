@@ -1,7 +1,5 @@
 """Predictions, as in cranking.py, of moments that belong to joint angles, as the paper has them: curves that may be."""
 
-from dataclasses import replace
-
 import numpy as np
 
 from fes_mj.common.arrays import FloatArray
@@ -10,7 +8,6 @@ from fes_mj.linkage import kinematics
 from fes_mj.moments.files import sampled_coefficients, sampled_moments
 from fes_mj.moments.fourier import fourier
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
-from fes_mj.moments.torque_velocity import drawn_relations
 from fes_mj.muscles.riders import Riders
 from fes_mj.muscles.timing import ANGLES
 from fes_mj.statics.turn import quasi_static
@@ -29,11 +26,8 @@ def knee_of_largest_moment(riders: Riders, setup: Setup) -> FloatArray:
 
 
 def torque_ratio_by_angle(riders: Riders, setup: Setup) -> FloatArray:
-    """Mean crank torque at the first cadence per that at the second, with setup's `torque_velocity`, if any."""
+    """Mean crank torque at the first cadence per that at the second."""
     curves = sampled_moments(riders.name, _CURVES)
-    if relation := setup.get("torque_velocity"):
-        drawn = drawn_relations(relation, _CURVES, seed=27)
-        curves = [replace(one, torque_velocity=other) for one, other in zip(curves, drawn, strict=True)]
 
     def torque(rpm: float) -> FloatArray:
         return np.array([quasi_static(TRICYCLE, curve, rpm * RPM).work_per_turn for curve in curves])

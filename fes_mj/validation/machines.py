@@ -1,4 +1,4 @@
-"""Predictions, as in cranking.py, that ask about joints' shares of the work, another machine, and the road."""
+"""Predictions, as in cranking.py, that ask about joints' shares of the work and about another machine."""
 
 import math
 
@@ -6,25 +6,21 @@ import numpy as np
 from scipy.optimize import brentq
 
 from fes_mj.common.arrays import FloatArray
-from fes_mj.common.units import KMH, RPM
+from fes_mj.common.units import RPM
 from fes_mj.linkage import kinematics
 from fes_mj.linkage.design import Design, Linkage
 from fes_mj.linkage.joints import PerJoint
-from fes_mj.moments.files import load_moments
 from fes_mj.muscles.anatomy import GROUPS, anatomy
-from fes_mj.muscles.fatigue import power_over_time
 from fes_mj.muscles.geometry import Flexion
 from fes_mj.muscles.passive import passive_moments
 from fes_mj.muscles.power import best_turn, muscle_turn
 from fes_mj.muscles.riders import Riders, load_riders
 from fes_mj.muscles.rules import trial_windows
 from fes_mj.muscles.timing import ANGLES, Windows
-from fes_mj.riding.ride import Ride
 from fes_mj.validation.cranking import TRICYCLE, Setup
 
 _SLIDER = 20.0  # m: a rocker so long leads as a straight slide does, within 2 mm
 _COUPLER = 5.0  # of the stepper per crank: long enough that its path is an ellipse
-_SPEEDS = np.linspace(1.0, 31.0, 13)  # km/h, between which the surplus of power is interpolated
 
 
 def _joint_power(riders: Riders, setup: Setup) -> PerJoint[tuple[FloatArray, FloatArray]]:
@@ -122,25 +118,6 @@ def stepping_per_cycling(riders: Riders, setup: Setup) -> FloatArray:
     sizes = [(crank, flat) for crank in setup["crank_m"] for flat in setup["flatness"]]
     steppers = [stepper(crank, flat, setup["knee_deg"]) for crank, flat in sizes]
     return np.concatenate([power(design) for design in steppers]) / np.tile(power(TRICYCLE), len(sizes))
-
-
-def speed(riders: Riders, setup: Setup) -> FloatArray:
-    """At which the muscles' power, after `minutes` of fatigue, is what a level road takes, km/h; 0 where it never is.
-
-    A steady crank: what a ride loses by not being one is left out.
-    """
-    ride, surplus = Ride(TRICYCLE, load_moments()), []
-    for speed in _SPEEDS * KMH:
-        cadence = speed / ride.travel
-        turn, _ = best_turn(riders, TRICYCLE, cadence)
-        left = power_over_time(turn, np.array([60 * setup["minutes"]]))[0, :, 0]
-        surplus.append(2 * left - (ride.load.rolling + ride.load.drag * speed**2) * speed)
-    left_over = np.array(surplus)
-    last = len(_SPEEDS) - 2 - (left_over[:-1] > 0)[::-1].argmax(axis=0)  # beyond it there is none left
-    rows = np.arange(len(riders))
-    before, after = left_over[last, rows], left_over[last + 1, rows]
-    reached = _SPEEDS[last] + (_SPEEDS[1] - _SPEEDS[0]) * before / (before - after)
-    return np.where((left_over > 0).any(axis=0), reached, 0.0)
 
 
 def effort_saved(riders: Riders, setup: Setup) -> FloatArray:

@@ -12,7 +12,7 @@ import numpy as np
 from fes_mj.common.arrays import FloatArray
 from fes_mj.common.reading import DATA, read_toml
 from fes_mj.muscles.riders import Riders, load_riders
-from fes_mj.validation import by_angle, cranking, machines
+from fes_mj.validation import by_angle, cranking, machines, roads
 from fes_mj.validation.cranking import Setup
 
 FILE = DATA / "published.toml"
@@ -25,7 +25,7 @@ RULE = (
 )
 _ENDS = (0.05, 0.5, 0.95)
 _WIDEST = 3.0  # prediction's interval per the measurement's
-_MODULES: tuple[ModuleType, ...] = (by_angle, cranking, machines)
+_MODULES: tuple[ModuleType, ...] = (by_angle, cranking, machines, roads)
 Interval: TypeAlias = tuple[float, float]
 Prediction: TypeAlias = Callable[[Riders, Setup], FloatArray]
 

@@ -12,7 +12,7 @@ from fes_mj.linkage.turning import turning
 from fes_mj.muscles.prior import drawn
 from fes_mj.muscles.riders import Riders
 from fes_mj.muscles.timing import ANGLES
-from fes_mj.validation import cranking, machines
+from fes_mj.validation import cranking, machines, roads
 from fes_mj.validation.by_angle import torque_ratio_by_angle
 from fes_mj.validation.published import AGREES, CANNOT_TELL, CONTRADICTS, prediction, rows, verdict
 
@@ -95,7 +95,7 @@ def test_at_the_speed_muscles_give_what_the_road_takes(riders):
     from fes_mj import Ride, load_moments
     from fes_mj.muscles.power import best_turn
 
-    speeds = machines.speed(riders, {"minutes": 0}) / 3.6
+    speeds = roads.speed(riders, {"minutes": 0}) / 3.6
     ride = Ride(cranking.TRICYCLE, load_moments())
     for number, speed in enumerate(speeds):
         power = 2 * best_turn(riders, cranking.TRICYCLE, speed / ride.travel)[0].power_mean[number, 0]
