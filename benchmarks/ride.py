@@ -11,7 +11,6 @@ from fes_mj.common.console import print_table
 from fes_mj.crosscheck.ride_case import RideCase
 from fes_mj.linkage.design_file import load_design
 from fes_mj.moments.files import load_moments
-from fes_mj.moments.torque_velocity import load_torque_velocity
 from fes_mj.riding.ride import Ride
 from fes_mj.riding.trace import ride as ride_by_equation
 from fes_mj.simulation.road import ride_on_road
@@ -24,8 +23,7 @@ ROUNDS = 3  # of half a minute
 
 def rates(name: str) -> dict[str, np.ndarray]:
     """Seconds of riding per second by the reduced model, MuJoCo with all records, a bare mj_step loop on its model."""
-    moments = load_moments("p1p2").at_speed(load_torque_velocity("hill"))
-    ride = Ride(load_design(name), moments, duration=DURATION)
+    ride = Ride(load_design(name), load_moments("p1p2"), duration=DURATION)
     step = RideCase(ride).simulation.timestep
     model, steps = build_road_mjcf(ride, step, drawn=False).compile(), round(DURATION / step)
 

@@ -15,10 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fes_mj import load_design, load_moments
-from fes_mj.linkage.joints import JOINTS
-from fes_mj.moments.drive import commanded
 from fes_mj.moments.torque_map import torque_map
-from fes_mj.moments.torque_velocity import load_torque_velocity
 from fes_mj.riding.stimulation import MUSCLES, Window, stimulation
 from fes_mj.simulation.variants import variant_model, variant_options
 
@@ -34,7 +31,7 @@ class RideEnv(gymnasium.Env[NDArray[np.float64], NDArray[Any]]):
     Actions, held for PERIOD:
       "stimulation": MultiBinary(6), in the order of CHANNELS: quadriceps, hamstrings and gluteus of the right leg, then
         of the left. An activation follows each with a time constant `lag` (s); the moment is the activation times the
-        largest that the group's recovered moments show, times Hill's factor for the joint's speed.
+        largest that the group's recovered moments show.
       "moments": Box(4) within -1 and 1, of the motors' ranges in N m: hip and knee of the right leg, then of the left;
         extension is positive.
 
@@ -62,19 +59,14 @@ class RideEnv(gymnasium.Env[NDArray[np.float64], NDArray[Any]]):
         lag: float = 0.1,
         duration: float = 20.0,
     ) -> None:
-        self.design, moments = load_design(design), load_moments(group).at_speed(load_torque_velocity("hill"))
+        self.design, moments = load_design(design), load_moments(group)
         spec = variant_model(self.design, moments, self.design.linkage.cadence, variant_options(variants))
         self.model = spec.compile()
         self.data = mujoco.MjData(self.model)
         self.lag, self.duration, self.stimulated = lag, duration, actions == "stimulation"
-        self.relation = moments.torque_velocity
-        torque = torque_map(moments)
-        at_rest = {
-            joint: commanded(torque.table[joint], self.relation, joint, torque.reference_speed[joint], 0.0)
-            for joint in JOINTS
-        }
+        table = torque_map(moments).table
         self.strength = [
-            float((muscle.sense * at_rest[muscle.joint]).max()) for muscle in (MUSCLES[n] for _, n in CHANNELS)
+            float((muscle.sense * table[muscle.joint]).max()) for muscle in (MUSCLES[n] for _, n in CHANNELS)
         ]
         self.steps = round(PERIOD / self.model.opt.timestep)
         self.crank, self.road = self.data.joint("crank"), self.data.joint("road")
@@ -124,9 +116,7 @@ class RideEnv(gymnasium.Env[NDArray[np.float64], NDArray[Any]]):
         self.data.ctrl[:] = 0.0
         for (leg, name), active, strength in zip(CHANNELS, self.activation, self.strength, strict=True):
             joint, sense = MUSCLES[name]
-            speed = sense * float(self.data.joint(f"{leg}_{joint}").qvel[0])
-            factor = self.relation.factor(joint, speed) if self.relation else 1.0
-            self.data.actuator(f"{leg}_{joint}").ctrl += sense * active * strength * factor
+            self.data.actuator(f"{leg}_{joint}").ctrl += sense * active * strength
         return float(self.activation.mean())
 
     def _observation(self) -> NDArray[np.float64]:

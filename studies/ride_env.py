@@ -92,8 +92,8 @@ COLUMNS = {
 }
 HEADING = f"""# Baselines of the ride environment
 
-Written by `python -m studies.ride_env`: examples/ride_env.py with its defaults (flat road, moments of group p1p2
-with Hill's relation, muscles that lag by 0.1 s), means of {EPISODES} episodes. *table*: each muscle group in its core
+Written by `python -m studies.ride_env`: examples/ride_env.py with its defaults (flat road, moments of group p1p2,
+muscles that lag by 0.1 s), means of {EPISODES} episodes. *table*: each muscle group in its core
 window (`fes_mj stimulation --drive moments`) advanced for the actual speed; *random*: each group on or off by chance at
 50 Hz. An episode ends when the tricycle stops. *sd*: of the return, over episodes.
 

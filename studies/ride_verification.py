@@ -4,8 +4,8 @@
 
 Both parts, each with a page of its own: results/ride_verification.md and results/ride_random.md.
 
-The paper's designs with both groups and transmissions, for a minute: on the flat with Hill's relation, and speed-free
-on the slope that the mean power balances at 5.71 km/h. Random linkages 0.2 to 30 mm from their dead centres for five
+The paper's designs with both groups and transmissions, for a minute: on the flat, and on the slope that the mean power
+balances at 5.71 km/h. Random linkages 0.2 to 30 mm from their dead centres for five
 seconds, or until nothing more can come.
 """
 
@@ -27,7 +27,6 @@ from fes_mj.crosscheck.ride_case import RideCase
 from fes_mj.linkage.design_file import DESIGNS, load_design
 from fes_mj.moments.files import load_moments
 from fes_mj.moments.joint_moments import GROUPS
-from fes_mj.moments.torque_velocity import load_torque_velocity
 from fes_mj.riding.ride import TRANSMISSIONS, Ride, Road, balancing_slope
 from studies.random_linkages import random_design
 
@@ -40,21 +39,20 @@ SLOPES = (-0.06, 0.20)
 
 def paper_rides() -> Iterator[Ride]:
     """All combinations."""
-    hill = load_torque_velocity("hill")
     for name in DESIGNS:
         for group in GROUPS:
             moments = load_moments(group)
             for transmission in TRANSMISSIONS:
                 ride = Ride(load_design(name), moments, transmission=transmission, duration=DURATION)
-                yield replace(ride, moments=moments.at_speed(hill))
+                yield ride
                 yield replace(ride, road=replace(ride.road, slope=balancing_slope(ride)))
 
 
 def random_rides() -> Iterator[Ride]:
-    """Each on a linkage of its own; transmissions and muscles take turns. A quarter starts from rest."""
-    rng, relations = np.random.default_rng(SEED), (None, load_torque_velocity("hill"))
+    """Each on a linkage of its own; transmissions take turns. A quarter starts from rest."""
+    rng = np.random.default_rng(SEED)
     for number in range(RANDOM_RIDES):
-        moments = replace(load_moments(str(rng.choice(GROUPS))), torque_velocity=relations[number // 2 % 2])
+        moments = load_moments(str(rng.choice(GROUPS)))
         yield Ride(
             random_design(rng, nearest=NEAREST),
             moments,
@@ -125,15 +123,14 @@ def paper_table(outcomes: Sequence[Outcome]) -> Table:
                 100 * max(result["numerical_uncertainty"].values()),
             )
         )
-    note = "Flat with Hill's relation, uphill speed-free on the slope that the mean power balances at 5.71 km/h."
+    note = "On the flat, and on the slope that the mean power balances at 5.71 km/h."
     return Table("Rides in MuJoCo", columns, rows, note)
 
 
 def random_table(outcomes: Sequence[Outcome]) -> Table:
-    """By transmission and muscles: verdicts, refused and failed, and what they took."""
+    """By transmission: verdicts, refused and failed, and what they took."""
     columns = {
         "transmission": "",
-        "muscles": "",
         "rides": "d",
         "refused": "d",
         "failed": "d",
@@ -144,14 +141,13 @@ def random_table(outcomes: Sequence[Outcome]) -> Table:
         "slowest, s": ".0f",
     }
     rows = []
-    for number in range(4):
-        own = outcomes[number::4]
+    for number in range(len(TRANSMISSIONS)):
+        own = outcomes[number :: len(TRANSMISSIONS)]
         done = [one for one in own if one.checks]
         words = [one.summary["verdict"] for one in done]
         rows.append(
             (
                 own[0].ride.transmission,
-                "Hill's" if own[0].ride.moments.torque_velocity else "speed-free",
                 len(own),
                 len(own) - len(done),
                 sum(one.worst > 1 for one in done),

@@ -1,14 +1,14 @@
 """What each unknown contributes to the error of a mean power: alone, all of them together, and by Sobol's shares."""
 
 import math
-from collections.abc import Callable, Collection, Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from fes_mj.budget.power import Rows, UncertainPower
-from fes_mj.budget.unknowns import EXTRAPOLATION, LAG, MASSES, MOMENTS, SPEED, priors
+from fes_mj.budget.unknowns import EXTRAPOLATION, MASSES, MOMENTS, priors
 from fes_mj.common.arrays import FloatArray, IntArray
 from fes_mj.common.brief import Brief
 from fes_mj.common.errors import require_extra
@@ -41,28 +41,23 @@ class Spread(NamedTuple):
 
 @dataclass(frozen=True, repr=False)
 class ErrorBudget(Brief):
-    """Of the mean crank power of one leg.
+    """Of the mean crank power of one leg, by moments that are the same at any speed, at once.
 
-    by: standard deviation by unknown, W, the others as they are known best; None where it cannot be told. total: all
-    unknowns drawn. at_its_speed: all but the speed dependence, which is as the run has it. draws: of each.
+    by: standard deviation by unknown, W, the others as they are known best. total: all unknowns drawn. draws: of each.
     """
 
-    by: dict[str, float | None]
+    by: dict[str, float]
     total: Spread
-    at_its_speed: Spread
     draws: int
 
     @property
     def brief(self) -> str:
         """The result in a sentence, the largest contribution first, those below a hundredth of the total left out."""
-        largest = sorted(((sd, name) for name, sd in self.by.items() if sd and sd > self.total.sd / 100), reverse=True)
+        largest = sorted(((sd, name) for name, sd in self.by.items() if sd > self.total.sd / 100), reverse=True)
         alone = ", ".join(f"{name} {sd:.2g}" for sd, name in largest)
         failed = f"; {self.total.failed} of {self.draws} linkages drawn do not turn" * bool(self.total.failed)
-        together, at_its_speed = (with_sd(spread.mean, spread.sd, 1) for spread in (self.total, self.at_its_speed))
-        return (
-            f"{together} W with every unknown drawn (sd of each alone: {alone}), {at_its_speed} W with the speed "
-            f"dependence as here{failed}"
-        )
+        together = with_sd(self.total.mean, self.total.sd, 1)
+        return f"{together} W with every unknown drawn (sd of each alone: {alone}){failed}"
 
 
 def error_budget(*legs: QuasiStatic, draws: int = DRAWS) -> ErrorBudget | None:
@@ -70,16 +65,14 @@ def error_budget(*legs: QuasiStatic, draws: int = DRAWS) -> ErrorBudget | None:
 
     >>> budget = fes_mj.error_budget(fes_mj.quasi_static(fes_mj.load_design("d1"), fes_mj.load_moments("p1p2")))
     >>> round(budget.total.mean, 1), round(budget.total.sd, 1)
-    (17.6, 3.8)
+    (30.5, 1.1)
     """
     if any(leg.moments.covariance is None for leg in legs):
         return None
     uncertain = [UncertainPower(leg, draws) for leg in legs]
-    names, alone = unknowns(*legs), np.arange(draws)
-    by: dict[str, float | None] = dict.fromkeys(priors(), None) | {MASSES: 0.0} | _linear(legs)
-    by |= {name: Spread.of(powers(uncertain, {name: alone})[0]).sd for name in names if name not in _OF_A_LEG}
-    drawn = powers(uncertain, together(names, draws), [SPEED])
-    return ErrorBudget(by, Spread.of(drawn[0]), Spread.of(drawn[1]), draws)
+    alone, known = np.arange(draws), _linear(legs) | {MASSES: 0.0}
+    by = {name: known[name] if name in known else Spread.of(powers(uncertain, {name: alone})).sd for name in priors()}
+    return ErrorBudget(by, Spread.of(powers(uncertain, together(unknowns(), draws))), draws)
 
 
 def summary(budget: ErrorBudget | None) -> dict[str, Any]:
@@ -89,18 +82,15 @@ def summary(budget: ErrorBudget | None) -> dict[str, Any]:
     return {
         "power_sd_total_W": budget.total.sd,
         "power_mean_drawn_W": budget.total.mean,
-        "power_sd_at_its_speed_W": budget.at_its_speed.sd,
-        "power_mean_drawn_at_its_speed_W": budget.at_its_speed.mean,
         "power_sd_by": budget.by,
         "draws": budget.draws,
         "draws_that_do_not_turn": budget.total.failed,
     }
 
 
-def unknowns(*legs: QuasiStatic) -> list[str]:
-    """Names of what can be drawn: without the cadence of the measurement neither speed dependence nor lag."""
-    known = all(leg.moments.cadence_known for leg in legs)
-    return [name for name in priors() if name != MASSES and (known or name not in (SPEED, LAG))]
+def unknowns() -> list[str]:
+    """Names of what is drawn."""
+    return [name for name in priors() if name != MASSES]
 
 
 def together(names: Iterable[str], count: int, times: int = 1) -> dict[str, IntArray]:
@@ -109,12 +99,12 @@ def together(names: Iterable[str], count: int, times: int = 1) -> dict[str, IntA
     return {name: random.permutation(np.tile(np.arange(count), times)) for name in names}
 
 
-def powers(legs: list[UncertainPower], rows: Rows, *without: Collection[str]) -> FloatArray:
+def powers(legs: list[UncertainPower], rows: Rows) -> FloatArray:
     """UncertainPower.at of the mean of legs; what belongs to a leg is independent of the other's."""
-    of_legs = [legs[0].at(rows, *without)]
+    of_legs = [legs[0].at(rows)]
     for leg in legs[1:]:
         own = {name: leg.count - 1 - numbers if name in _OF_A_LEG else numbers for name, numbers in rows.items()}
-        of_legs.append(leg.at(own, *without))
+        of_legs.append(leg.at(own))
     return np.asarray(np.mean(of_legs, axis=0))
 
 

@@ -1,22 +1,12 @@
 """Mean crank power as a function of what is not known: one realisation of each unknown a row."""
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from fes_mj.budget.unknowns import (
-    DIMENSIONS,
-    EXTRAPOLATION,
-    LAG,
-    MOMENTS,
-    RIDER,
-    SPEED,
-    ZONES,
-    Realisations,
-    realisations,
-)
+from fes_mj.budget.unknowns import DIMENSIONS, EXTRAPOLATION, MOMENTS, RIDER, ZONES, Realisations, realisations
 from fes_mj.common.arrays import FloatArray, IntArray
 from fes_mj.linkage import kinematics
 from fes_mj.linkage.assembly import SCAN
@@ -25,13 +15,11 @@ from fes_mj.linkage.joints import JOINTS
 from fes_mj.linkage.kinematics import Motion
 from fes_mj.linkage.turning import batch_turning, leg_reach
 from fes_mj.linkage.variables import replaced
-from fes_mj.moments.drive import commanded
 from fes_mj.moments.fourier import fourier
 from fes_mj.statics.extrapolation import zone_powers
 from fes_mj.statics.turn import QuasiStatic
 
-# Over the angles of SCAN; against twenty times as many a power changes by less than 0.02 W rms, and with a lag, which
-# filters the jumps of the torque map, by less than 0.2 W.
+# Over the angles of SCAN; against twenty times as many a power changes by less than 0.02 W rms.
 TABLE = 360  # crank angles of the measurement, between which moments are interpolated linearly
 BLOCK = 1000  # rows at once: their arrays take some ten megabytes
 _TURN = np.arange(TABLE) * (2 * np.pi / TABLE)
@@ -55,24 +43,19 @@ class UncertainPower:
         """Realisations of every unknown."""
         return realisations(self.result.design, self.result.moments, self.count)
 
-    def at(self, rows: Rows, *without: Collection[str]) -> FloatArray:
-        """Power of each row of realisations, W; NaN where the linkage does not turn.
-
-        without: unknowns, none of the linkage's or the rider's, that are as they are known best in a case of their own.
-        Shape (1 + cases, rows).
-        """
+    def at(self, rows: Rows) -> FloatArray:
+        """Power of each row of realisations, W, shape (rows,); NaN where the linkage does not turn."""
         count = len(next(iter(rows.values())))
         blocks = [slice(start, start + BLOCK) for start in range(0, count, BLOCK)]
         cases = [{name: numbers[block] for name, numbers in rows.items()} for block in blocks]
-        return np.concatenate([self._block(case, without) for case in cases], axis=1)
+        return np.concatenate([self._block(case) for case in cases])
 
-    def _block(self, rows: Rows, without: Sequence[Collection[str]]) -> FloatArray:
+    def _block(self, rows: Rows) -> FloatArray:
         motion = kinematics.solve(self._design(rows), SCAN)
         reach, swing = leg_reach(motion.design, motion.points["pedal"].value), np.ptp(motion.joint_angle.hip, axis=-1)
         turns = batch_turning(motion.design, reach, np.atleast_1d(swing)).turns  # as every command decides
         count = len(next(iter(rows.values())))
-        cases = [{name: numbers for name, numbers in rows.items() if name not in omitted} for omitted in ((), *without)]
-        return np.where(turns, [np.broadcast_to(self._mean(motion, case), count) for case in cases], np.nan)
+        return np.where(turns, np.broadcast_to(self._mean(motion, rows), count), np.nan)
 
     def _design(self, rows: Rows) -> Design:
         parts = ((DIMENSIONS, self.drawn.dimensions), (RIDER, self.drawn.legs))
@@ -84,17 +67,12 @@ class UncertainPower:
         torque, cadence, drawn = self.result.torque, self.result.cadence, self.drawn
         best = np.concatenate([*self.result.moments.coefficients])[None]
         coefficients = drawn.coefficients[rows[MOMENTS]] if MOMENTS in rows else best
-        relation = drawn.relations.taken(rows[SPEED]) if SPEED in rows else self.result.moments.torque_velocity
-        lag = drawn.lags[rows[LAG]] if LAG in rows else np.zeros((1, 1))
         drifts = drawn.drifts[rows[EXTRAPOLATION]] if EXTRAPOLATION in rows else np.zeros(ZONES)
         power = cadence * np.einsum("...z,...z->...", np.atleast_2d(zone_powers(motion, torque)), drifts)
-        speeds, angles, rates = torque.reference.joint_rates(_TURN), motion.joint_angle, motion.joint_rate
+        angles, rates = motion.joint_angle, motion.joint_rate
         for joint, terms in zip(JOINTS, np.split(coefficients, 2, axis=-1), strict=True):
-            rate, measured = rates[joint], torque.reference.cadence
-            command = commanded(terms @ _TERMS, relation, joint, measured * speeds[joint], lag * measured)
-            moment = _answer(_read(command, torque.source_angle(joint, angles[joint], rate)), lag, cadence, measured)
-            if relation:
-                moment = moment * relation.factor(joint, np.sign(moment) * cadence * rate)
+            rate = rates[joint]
+            moment = _read(terms @ _TERMS, torque.source_angle(joint, angles[joint], rate))
             power = power + cadence * np.einsum("...a,...a->...", moment, rate) / rate.shape[-1]
         return np.asarray(power)
 
@@ -107,13 +85,3 @@ def _read(table: FloatArray, source: FloatArray) -> FloatArray:
     row = np.arange(len(table))[:, None]
     here, there = table[row, index % TABLE], table[row, (index + 1) % TABLE]
     return here + part * (there - here)
-
-
-def _answer(command: FloatArray, lag: FloatArray, cadence: float, measured: float) -> FloatArray:
-    """What a muscle with a lag, s, makes of a periodic command that is timed ahead for the crank speed, rad/s."""
-    if not lag.any():
-        return command
-    order = np.arange(command.shape[-1] // 2 + 1)
-    ahead = np.atan(cadence * lag) - np.atan(measured * lag)
-    transfer = np.exp(1j * order * ahead) / (1 + 1j * order * cadence * lag)
-    return np.fft.irfft(np.fft.rfft(command) * transfer, command.shape[-1])

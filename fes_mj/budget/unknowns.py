@@ -14,16 +14,13 @@ from fes_mj.common.arrays import FloatArray
 from fes_mj.common.reading import DATA, read_toml
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.design_file import identified_draws, load_design
-from fes_mj.linkage.joints import JOINTS
-from fes_mj.linkage.kinematics import FULL_TURN
 from fes_mj.linkage.variables import LENGTHS, component
 from fes_mj.moments.files import load_moments, sampled_coefficients
 from fes_mj.moments.joint_moments import GROUPS, JointMoments
-from fes_mj.moments.torque_velocity import TorqueVelocity, drawn_relations, stacked
 
 # As data/error_budget.toml has them; the last has no effect on a mean power.
-MOMENTS, DIMENSIONS, SPEED, LAG = "moments", "dimensions", "speed dependence", "lag"
-RIDER, EXTRAPOLATION, MASSES = "rider", "extrapolation", "leg masses"
+MOMENTS, DIMENSIONS, RIDER = "moments", "dimensions", "rider"
+EXTRAPOLATION, MASSES = "extrapolation", "leg masses"
 ZONES = 8  # of extrapolation.zone_powers
 _SEED = 2022
 _FILE = DATA / "error_budget.toml"
@@ -34,14 +31,12 @@ class Realisations:
     """As many of every unknown, along the first axis.
 
     coefficients: of the moments, N m, shape (count, 98). dimensions, legs: components of the design, in the unit of
-    files, shape (count,) each. relations: a batch. lags: s, shape (count, 1). drifts: of the moments in each zone of
-    extrapolation.zone_powers, in standard deviations, shape (count, 8).
+    files, shape (count,) each. drifts: of the moments in each zone of extrapolation.zone_powers, in standard
+    deviations, shape (count, 8).
     """
 
     coefficients: FloatArray
     dimensions: dict[str, FloatArray]
-    relations: TorqueVelocity
-    lags: FloatArray
     legs: dict[str, FloatArray]
     drifts: FloatArray
 
@@ -49,33 +44,16 @@ class Realisations:
 def realisations(design: Design, moments: JointMoments, count: int) -> Realisations:
     """So many of each unknown, for moments with a covariance. What designs share is the same in all of them."""
     random = np.random.default_rng(_SEED)
-    lags = priors()[LAG]["longest_s"] * random.random((count, 1))
     errors = priors()[RIDER]["length_sd_m"] * random.standard_normal((2, count))
     legs = {name: component(design, name) + error for name, error in zip(("thigh", "shank"), errors, strict=True)}
     drifts = random.standard_normal((count, ZONES))
-    return Realisations(
-        _coefficients(moments, count), _dimensions(design, count), _relations(moments, count), lags, legs, drifts
-    )
+    return Realisations(_coefficients(moments, count), _dimensions(design, count), legs, drifts)
 
 
 @cache
 def priors() -> dict[str, dict[str, Any]]:
     """What data/error_budget.toml says of each unknown, in its order."""
     return dict(read_toml(_FILE, "priors of the error budget").content)
-
-
-def _relations(moments: JointMoments, count: int) -> TorqueVelocity:
-    """Of those drawn the ones with which the joints could have moved as fast as they did in the measurement."""
-    drawn, reference = _drawn_relations(count), moments.measured_on
-    rates = reference.joint_rates(FULL_TURN)
-    fastest = {joint: np.asarray(speed)[:, 0] for joint, speed in drawn.max_speed.items()}
-    fast = [fastest[joint] > reference.cadence * np.abs(rates[joint]).max() for joint in JOINTS]
-    return drawn.taken(_spread(np.flatnonzero(np.logical_and.reduce(fast)), count))
-
-
-@cache
-def _drawn_relations(count: int) -> TorqueVelocity:
-    return stacked(drawn_relations(priors()[SPEED]["relation"], count, _SEED))
 
 
 def _coefficients(moments: JointMoments, count: int) -> FloatArray:

@@ -34,6 +34,7 @@ COMMANDS = {
     },
     "The paper": {"reproduce": "Compute the paper's tables and figures and write them beside our own."},
 }
+GONE = ("--torque-velocity", "--lag")  # options of any command that muscles have made superfluous
 MOVED = {"explain": "fes_mj validate --explain CHECK", "view": "fes_mj simulate DESIGN --view"}
 
 

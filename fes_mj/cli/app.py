@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 from cyclopts import App, CycloptsError
 
-from fes_mj.cli import AGREES, BAD_INPUT, COMMANDS, DISAGREES, MISSING_PART, MOVED, OUT_OF_MEMORY, PURPOSE
+from fes_mj.cli import AGREES, BAD_INPUT, COMMANDS, DISAGREES, GONE, MISSING_PART, MOVED, OUT_OF_MEMORY, PURPOSE
 from fes_mj.cli.process import interruption_code
 from fes_mj.common.console import errors
 from fes_mj.common.errors import InputError, MissingPartError, UnstableError
@@ -37,6 +37,11 @@ def run(arguments: Sequence[str] | None = None) -> int:
     arguments = sys.argv[1:] if arguments is None else arguments
     if arguments and (now := MOVED.get(arguments[0])):
         _say(f"{arguments[0]} is now `{now}`")
+        return BAD_INPUT
+    if gone := next((flag for flag in GONE if flag in [argument.partition("=")[0] for argument in arguments]), None):
+        _say(
+            f"{gone} is gone: moments are the same at any speed, at once; give --drive muscles for muscles that are not"
+        )
         return BAD_INPUT
     try:
         code = app(arguments, exit_on_error=False, print_error=False, result_action="return_value")

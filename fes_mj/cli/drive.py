@@ -46,8 +46,6 @@ class DriveOptions:
 
     def solve(self, options: LoadOptions, name: str) -> MuscleStatic:
         """A design driven by muscles. Raises InputError for options that do not go together."""
-        if options.torque_velocity:
-            raise InputError("--torque-velocity is of moments; --drive muscles has the speed dependence of each muscle")
         design, riders = load_design(name, options.dims), self.load_riders(options)
         speed = speed_at(options.cadence, design)
         return MuscleStatic.solve(design, riders, speed, self.timing, self.duty, options.legs)

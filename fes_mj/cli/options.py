@@ -1,6 +1,5 @@
 """Options that several commands share, and what they load."""
 
-import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,7 +16,6 @@ from fes_mj.linkage.design_file import load_design
 from fes_mj.linkage.variables import VARIABLES, crank_speed
 from fes_mj.moments.files import load_moments
 from fes_mj.moments.joint_moments import JointMoments
-from fes_mj.moments.torque_velocity import load_torque_velocity
 from fes_mj.statics.friction import Bearings
 
 
@@ -46,7 +44,6 @@ Dims: TypeAlias = Annotated[
     Literal["identified", "printed"],
     Parameter(help="Dimensions of one of the paper's designs: as identified, or as the paper prints them."),
 ]
-Lag: TypeAlias = Annotated[float, Parameter(validator=Number(gte=0, lte=1))]
 Seed: TypeAlias = Annotated[int, Parameter(validator=Number(gte=0))]
 Jobs: TypeAlias = Annotated[int, Parameter(validator=Number(gte=1))]
 PeopleOfEachSex: TypeAlias = Annotated[int, Parameter(validator=Number(gte=10, lte=100_000))]
@@ -138,20 +135,15 @@ class LoadOptions(MomentsOptions):
     Args:
         cadence: Crank speed in rpm; by default the one at which the tricycle does 5.71 km/h.
         legs: One leg, or two half a turn apart on the same crank.
-        torque_velocity: Let joint moments change with joint speed, by Hill's relation; by default they do not, as in
-            the paper.
     """
 
     cadence: Cadence | None = None
     legs: Legs = 1
     dims: Dims = "identified"
-    torque_velocity: Literal["hill"] | None = None
 
     def load(self, design: str) -> Loaded:
         """Load everything the options name. Raises InputError for what cannot be used."""
         moments, loaded = self.load_moments(self.legs), load_design(design, self.dims)
-        if self.torque_velocity:
-            moments = moments.at_speed(load_torque_velocity(self.torque_velocity))
         return Loaded(loaded, moments, speed_at(self.cadence, loaded))
 
 
@@ -196,16 +188,6 @@ def warn_of(moments: JointMoments) -> None:
         complain(f"{moments.name}: {misreading.text}")
     if moments.left:
         warn_of(moments.left)
-
-
-def require_lag(lag: float, design: Design, cadence: float) -> None:
-    """Raise InputError for a lag (s) that takes a turn of the crank (rad/s) or more."""
-    turn = 2 * math.pi / cadence
-    if lag >= turn:
-        raise InputError(
-            f"--lag is {lag:g}; it must be shorter than a turn of the crank, which takes {turn:.3g} s in "
-            f"{design.name} at {cadence / RPM:.4g} rpm: no stimulation can lead a muscle by more"
-        )
 
 
 def speed_at(cadence: float | None, design: Design) -> float:

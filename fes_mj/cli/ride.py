@@ -11,7 +11,7 @@ from cyclopts import Group, Parameter
 from cyclopts.validators import Number, mutually_exclusive
 
 import fes_mj
-from fes_mj.cli.options import DesignName, Dims, Flag, Lag, MomentsOptions, Out, PrintOptions, require_lag, speed_at
+from fes_mj.cli.options import DesignName, Dims, Flag, MomentsOptions, Out, PrintOptions
 from fes_mj.cli.tables import beside, conclude_checks, or_dash, print_checks, what_moves
 from fes_mj.common.console import print_table, say
 from fes_mj.common.errors import require_extra
@@ -19,7 +19,6 @@ from fes_mj.common.units import KMH, RPM
 from fes_mj.common.writing import json_text, require_results, require_writable, write_results
 from fes_mj.linkage.design import TRICYCLE_SPEED
 from fes_mj.linkage.design_file import load_design
-from fes_mj.moments.torque_velocity import load_torque_velocity
 from fes_mj.riding.ride import Ride, Road
 
 if TYPE_CHECKING:
@@ -41,10 +40,6 @@ class RideOptions(PrintOptions, MomentsOptions):
         launch: Speed at the start in km/h; by default 5.71.
         from_rest: Start from rest instead, at this crank angle in degrees.
         duration: Of the ride, in s.
-        torque_velocity: Let joint moments change with joint speed by Hill's relation, or not. Without it there is no
-            sensible steady speed on the flat.
-        lag: Time constant in s with which the muscles follow the stimulation. The stimulation makes good what the
-            tricycle of the measurement lags at its cadence, and is timed ahead for the actual one.
         tricycle_mass: Of the tricycle with its wheels, in kg, without crank and linkage.
         rolling_mass: Of its rims, in kg, which count twice when it accelerates.
         crr: Coefficient of rolling resistance.
@@ -56,8 +51,6 @@ class RideOptions(PrintOptions, MomentsOptions):
     launch: Annotated[float | None, Parameter(group=_BEGIN, validator=Number(gte=0.1, lte=60))] = None
     from_rest: Annotated[float | None, Parameter(group=_BEGIN, validator=Number(gte=0, lte=360))] = None
     duration: Annotated[float, Parameter(validator=Number(gte=1, lte=300))] = 60.0
-    torque_velocity: Literal["hill", "none"] = "hill"
-    lag: Lag = 0.0
     tricycle_mass: Annotated[float, Parameter(group=_TRICYCLE, validator=Number(gte=1, lte=500))] = 20.0
     rolling_mass: Annotated[float, Parameter(group=_TRICYCLE, validator=Number(gte=0, lte=50))] = 3.0
     crr: Annotated[float, Parameter(group=_TRICYCLE, validator=Number(gte=0, lte=0.5))] = 0.008
@@ -67,18 +60,12 @@ class RideOptions(PrintOptions, MomentsOptions):
     def load(self, name: str) -> Ride:
         """Load everything the options name. Raises InputError for what cannot be used."""
         design, moments = load_design(name, self.dims), self.load_moments(2)
-        require_lag(self.lag, design, speed_at(None, design))
-        if self.torque_velocity == "hill":
-            moments = moments.at_speed(load_torque_velocity("hill"))
-        if self.lag:
-            moments.require_cadence("with a lag")
         launch = TRICYCLE_SPEED if self.launch is None else self.launch * KMH
         return Ride(
             design,
             moments,
             Road(self.slope / 100, self.tricycle_mass, self.rolling_mass, self.crr, self.drag_area),
             transmission=self.transmission,
-            lag=self.lag,
             launch=launch if self.from_rest is None else 0.0,
             start=math.radians(self.from_rest or 0.0),
             duration=self.duration,
@@ -139,7 +126,7 @@ def _print(case: fes_mj.RideCase, starts: Starts | None) -> None:
     ride, run = case.ride, case.simulation.trace
     if case.agrees:
         road = f"{ride.transmission}{' gear' if ride.fixed else ''}, {100 * ride.road.slope:g} % slope"
-        title = f"{what_moves(ride.design, ride.moments.driver)}; {road}"
+        title = f"{what_moves(ride.design, ride.moments.name)}; {road}"
         error = case.uncertainty
         rows = beside(_rows(run, error["mujoco"]), _rows(case.reference, error["reduced"]))
         print_table(title, ("", "MuJoCo", "reduced model"), rows)

@@ -33,7 +33,6 @@ def stimulation(
     drive: MusclesFirst = MusclesFirst(),
     csv: Path | None = None,
     out: Annotated[list[Path] | None, Parameter(name=["--out", "-o"], json_list=False, negative="")] = None,
-    lag: Annotated[str | None, Parameter(show=False)] = None,
     options: PrintOptions = PrintOptions(),
 ) -> None:
     """When to stimulate: crank angles for a stimulator, what every muscle group gives and costs, for this seat.
@@ -44,10 +43,6 @@ def stimulation(
         csv: Write the windows by cadence as a table (.csv).
         out: Draw the page (.svg, .pdf or .png); may be given several times.
     """
-    if lag is not None:
-        raise InputError(
-            "--lag is gone: with --drive muscles, the default, windows lead by what every muscle lags; leave it out"
-        )
     loaded, pages = load_design(design, dims), out or []
     inputs = [Path(design), *([drive.muscles] if drive.muscles else [])]
     require_writable(csv, "the windows", ".csv", inputs)

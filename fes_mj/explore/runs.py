@@ -18,7 +18,6 @@ from fes_mj.fit.seat import fit_seat, seat_text
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.design_file import design_toml
 from fes_mj.moments.joint_moments import JointMoments
-from fes_mj.moments.torque_velocity import load_torque_velocity
 from fes_mj.muscles.riders import load_riders
 from fes_mj.muscles.timing import DUTY
 from fes_mj.optimization.findings import Findings
@@ -43,8 +42,7 @@ def simulate(design: Design, moments: JointMoments, state: Path, *, legs: int) -
 
 def ride(design: Design, moments: JointMoments, state: Path, *, transmission: str, slope: float) -> dict[str, Any]:
     """As `fes_mj ride`, slope in percent, in the same form. Raises what RideCase raises."""
-    hill = moments.at_speed(load_torque_velocity("hill"))
-    case = RideCase(Ride(design, hill, Road(slope=slope / 100), transmission=transmission))
+    case = RideCase(Ride(design, moments, Road(slope=slope / 100), transmission=transmission))
     result = case.sentence.removesuffix(".")
     return _checked("The two solvers", result[:1].lower() + result[1:], case.checks)
 

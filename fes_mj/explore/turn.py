@@ -64,7 +64,7 @@ def _under(solved: QuasiStatic, fine: QuasiStatic, legs: int) -> dict[str, Any]:
     covariance, reference = solved.moments.covariance, solved.torque.reference
     deviation = None
     if covariance is not None:
-        weights = all_legs(instant_power_weights(solved.motion, solved.cadence, solved.torque).T, legs)
+        weights = all_legs(instant_power_weights(solved.motion, solved.cadence, reference).T, legs)
         deviation = np.sqrt(np.sum((covariance @ weights) * weights, axis=0))
     outside = beyond(reference, solved.joint_angle)
     return {

@@ -1,6 +1,6 @@
 """Joint moments of riders over the crank angle of the tricycle they were measured on."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -12,7 +12,6 @@ from fes_mj.common.errors import InputError
 from fes_mj.linkage.joints import PerJoint
 from fes_mj.moments.fourier import fit, fourier
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE, ReferenceTricycle
-from fes_mj.moments.torque_velocity import TorqueVelocity
 
 GROUPS = ("p1p2", "p1p3")
 COLUMNS = ("crank_angle_deg", "knee_Nm", "hip_Nm")
@@ -35,7 +34,6 @@ class JointMoments(Brief):
     knee, hip: shape (n,), N m.
     covariance: of the curves' Fourier coefficients, knee's then hip's (moments.fourier), (N m)^2, shape (98, 98);
     None where their error is not known.
-    torque_velocity: how the moments change with joint speed; None is the paper's assumption, not at all.
     measured_on: the tricycle, rider and cadence; cadence_known: whether the cadence is said anywhere.
     left: the left leg's, where it has its own. misreadings: what looks wrong in the file they come from.
 
@@ -49,7 +47,6 @@ class JointMoments(Brief):
     knee: FloatArray
     hip: FloatArray
     covariance: FloatArray | None = None
-    torque_velocity: TorqueVelocity | None = None
     measured_on: ReferenceTricycle = PAPER_TRICYCLE
     cadence_known: bool = True
     left: "JointMoments | None" = None
@@ -58,12 +55,6 @@ class JointMoments(Brief):
     @property
     def brief(self) -> str:
         return f"{self.name}: {len(self.knee)} samples of a turn"
-
-    @property
-    def driver(self) -> str:
-        """What moves the legs, in a few words."""
-        relation = self.torque_velocity
-        return f"{self.name} with the torque-velocity relation of {relation.name.title()}" if relation else self.name
 
     @cached_property
     def coefficients(self) -> PerJoint[FloatArray]:
@@ -107,19 +98,6 @@ class JointMoments(Brief):
     def of_legs(self) -> "tuple[JointMoments, ...]":
         """The moments of each leg that has its own, the right one's first."""
         return (self,) if self.left is None else (self, self.left)
-
-    def at_speed(self, relation: TorqueVelocity) -> "JointMoments":
-        """The same moments of both legs, with a torque-velocity relation. Raises InputError as require_cadence."""
-        self.require_cadence("with joint speed")
-        return replace(self, torque_velocity=relation, left=self.left and self.left.at_speed(relation))
-
-    def require_cadence(self, what: str) -> None:
-        """Raise InputError unless it is known at which cadence, hence at which joint speeds, they were measured."""
-        if not self.cadence_known:
-            raise InputError(
-                f"{self.name}: how these moments change {what} depends on the cadence they were measured at, which "
-                "is not said; name it in a measurement file (measured_on.cadence_rpm), or leave that change out"
-            )
 
     @cached_property
     def power_mean(self) -> PerJoint[float]:

@@ -149,7 +149,7 @@ def _measurement(
         moments = replace(moments_of(mean, name), covariance=covariance, measured_on=measured_on, cadence_known=known)
     else:
         (turn,) = turns
-        moments = JointMoments(name, turn.crank_angle, turn.knee, turn.hip, None, None, measured_on, known)
+        moments = JointMoments(name, turn.crank_angle, turn.knee, turn.hip, None, measured_on, known)
     recording = replace(recording, turns=turns)
     compared = tuple(comparisons(recording, moments, said, declared, cadence_said, spikes))
     misreadings = tuple(comparison.misreading for comparison in compared if not comparison.agrees)

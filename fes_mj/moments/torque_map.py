@@ -37,23 +37,13 @@ class TorqueMap:
         """Moment at every crank angle of GRID, N m."""
         return self.moments.at(GRID)
 
-    @cached_property
-    def reference_speed(self) -> PerJoint[FloatArray]:
-        """Joint speed that the tricycle of the measurement had at every crank angle of GRID, rad/s."""
-        return self.reference.joint_rates(GRID).map(lambda rate: self.reference.cadence * rate)
-
     def source_angle(self, joint: str, angle: Any, rate: Any) -> FloatArray:
         """Crank angle of the measurement, rad from top dead centre; see ReferenceTricycle.source_angle."""
         return self.reference.source_angle(joint, angle, rate)
 
     def moment(self, joint: str, angle: Any, rate: Any) -> FloatArray:
-        """Moment in N m, any shape. angle: rad. rate: rad/s, zero is extension.
-
-        Without a torque-velocity relation only the sign of the rate, the direction, counts.
-        """
-        source = self.source_angle(joint, angle, rate)
-        moment = self.at_source(joint, source)
-        return moment if self.moments.torque_velocity is None else moment * self.speed_factor(joint, source, rate)
+        """Moment in N m, any shape. angle: rad. rate: its sign alone, the direction, counts; zero is extension."""
+        return self.at_source(joint, self.source_angle(joint, angle, rate))
 
     def along(self, motion: Motion, cadence: Any) -> PerJoint[FloatArray]:
         """Knee and hip moment along a motion at a crank speed in rad/s, of which only the size counts, N m."""
@@ -61,35 +51,12 @@ class TorqueMap:
         return PerJoint.of(lambda joint: self.moment(joint, angle[joint], np.abs(cadence) * rate[joint]))
 
     def at_source(self, joint: str, source: Any) -> FloatArray:
-        """Moment in N m at crank angles of the measurement, rad from top dead centre, any shape; speed-free."""
+        """Moment in N m at crank angles of the measurement, rad from top dead centre, any shape."""
         return _interpolated(self.table[joint], source)
-
-    def speed_factor(self, joint: str, source: FloatArray, rate: Any) -> FloatArray:
-        """Moment at this rate (rad/s) per moment at that of the measurement, at its crank angles `source` (rad).
-
-        1 without a torque-velocity relation.
-        """
-        relation, sign = self.moments.torque_velocity, np.sign(self.at_source(joint, source))
-        if relation is None:
-            return np.ones_like(sign)
-        then = _interpolated(self.reference_speed[joint], source)
-        return np.asarray(relation.factor(joint, sign * rate) / relation.factor(joint, sign * then))
 
     def feedback(self, joint: str) -> Callable[[float, float], float]:
         """The same map for plain floats, (angle, rate) -> moment; twenty times faster for one value at a time."""
-        lookup, relation = scalar_map(joint, _acos), self.moments.torque_velocity
-        where = self.parameters(joint)
-        mapped = partial(lookup, where, self.table[joint].tolist())
-        if relation is None:
-            return mapped
-        then, factor = partial(lookup, where, self.reference_speed[joint].tolist()), relation.factor
-
-        def moment(angle: float, rate: float) -> float:
-            measured = mapped(angle, rate)
-            sign = math.copysign(1.0, measured)
-            return float(measured * factor(joint, sign * rate) / factor(joint, sign * then(angle, rate)))
-
-        return moment
+        return partial(scalar_map(joint, _acos), self.parameters(joint), self.table[joint].tolist())
 
     def parameters(self, joint: str) -> tuple[tuple[float, ...], float, float]:
         """What scalar_map must know of the tricycle of the measurement."""

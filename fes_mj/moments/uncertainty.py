@@ -14,39 +14,31 @@ from fes_mj.linkage.joints import JOINTS
 from fes_mj.linkage.kinematics import Motion
 from fes_mj.moments.fourier import fourier
 from fes_mj.moments.reference_tricycle import ReferenceTricycle
-from fes_mj.moments.torque_map import TorqueMap
 
 
-def power_weights(motion: Motion, cadence: Any, torque: TorqueMap | ReferenceTricycle) -> FloatArray:
+def power_weights(motion: Motion, cadence: Any, reference: ReferenceTricycle) -> FloatArray:
     """Mean crank power of one leg per Fourier coefficient of knee, then hip moment, W/(N m), shape (98,).
 
     motion: over uniform crank angles; of a batch of designs the shape is (designs, 98). cadence: rad/s, a batch's of
-    shape (designs, 1). torque: with a torque-velocity relation the sign of its moments, by which the relation tells
-    shortening from lengthening, is kept; without one the tricycle of the measurement is enough.
+    shape (designs, 1). reference: the tricycle of the measurement.
     """
     parts = [
-        (gain[..., None, :] @ features)[..., 0, :] / gain.shape[-1]
-        for gain, features in _gains(motion, cadence, torque)
+        (gain[..., None, :] @ features)[..., 0, :] / gain.shape[-1] for gain, features in _gains(motion, reference)
     ]
     return np.asarray(cadence * np.concatenate(parts, axis=-1))
 
 
-def instant_power_weights(motion: Motion, cadence: float, torque: TorqueMap | ReferenceTricycle) -> FloatArray:
+def instant_power_weights(motion: Motion, cadence: float, reference: ReferenceTricycle) -> FloatArray:
     """The same of the power at every crank angle of one design, shape (angles, 98): their mean is power_weights."""
-    parts = [gain[:, None] * features for gain, features in _gains(motion, cadence, torque)]
+    parts = [gain[:, None] * features for gain, features in _gains(motion, reference)]
     return np.asarray(cadence * np.concatenate(parts, axis=-1))
 
 
-def _gains(
-    motion: Motion, cadence: Any, torque: TorqueMap | ReferenceTricycle
-) -> Iterator[tuple[FloatArray, FloatArray]]:
+def _gains(motion: Motion, reference: ReferenceTricycle) -> Iterator[tuple[FloatArray, FloatArray]]:
     """Of knee, then hip: power per moment and crank speed, and the terms of the series where its moment is read."""
     angle, rate = motion.joint_angle, motion.joint_rate
     for joint in JOINTS:
-        gain, source = rate[joint], torque.source_angle(joint, angle[joint], rate[joint])
-        if isinstance(torque, TorqueMap) and torque.moments.torque_velocity:
-            gain = gain * torque.speed_factor(joint, source, cadence * gain)
-        yield gain, fourier(source)
+        yield rate[joint], fourier(reference.source_angle(joint, angle[joint], rate[joint]))
 
 
 def with_sd(value: float, deviation: float | None, digits: int = 2) -> str:

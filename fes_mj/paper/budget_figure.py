@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from fes_mj.common.style import PARTS
 from fes_mj.moments.joint_moments import GROUPS
-from fes_mj.paper.error_budget import FREE, FULL, GAINS, Budgets, ratios
+from fes_mj.paper.error_budget import GAINS, Budgets, ratios
 from fes_mj.paper.printed import SIX_BARS
 
 _RATIOS = np.linspace(0, 3, 301)
@@ -34,22 +34,21 @@ def _bars(ax: Axes, budgets: Budgets, group: str) -> None:
     """First order of each unknown; what is left is what they do together."""
     designs = [name for name, other in budgets if other == group]
     bottom = np.zeros(len(designs))
-    blame = [budgets[name, group].shares[FULL] for name in designs]
+    blame = [budgets[name, group].shares for name in designs]
     parts = {unknown: np.array([max(0.0, shares[unknown].first) for shares in blame]) for unknown in blame[0]}
     parts["several together"] = np.maximum(0.0, 1 - sum(parts.values()))
-    for (unknown, part), colour in zip(parts.items(), PARTS, strict=True):
+    for (unknown, part), colour in zip(parts.items(), PARTS, strict=False):
         ax.bar([name.upper() for name in designs], 100 * part, bottom=bottom, color=colour, label=unknown, width=0.7)
         bottom += 100 * part
     ax.grid(axis="x", visible=False)
 
 
 def _curves(ax: Axes, budgets: Budgets, group: str) -> None:
-    """Of every six-bar, with speed dependence and, dashed, as in the paper."""
+    """Of every six-bar."""
     for name, colour in zip(SIX_BARS, PARTS, strict=False):
-        for case, style, words in ((FULL, "-", "lag and speed dependence"), (FREE, "--", "as the paper")):
-            ratio = np.sort(np.nan_to_num(ratios(budgets, name, group, case), nan=-np.inf))  # beats nothing
-            above = 100 * (1 - np.searchsorted(ratio, _RATIOS, side="right") / ratio.size)
-            ax.plot(_RATIOS, above, style, color=colour, label=f"{name.upper()}, {words}")
+        ratio = np.sort(np.nan_to_num(ratios(budgets, name, group), nan=-np.inf))  # beats nothing
+        above = 100 * (1 - np.searchsorted(ratio, _RATIOS, side="right") / ratio.size)
+        ax.plot(_RATIOS, above, color=colour, label=name.upper())
     ax.set(xlabel="ratio", xlim=(0.2, 2.8), ylim=(0, 103), xticks=_TICKS)
     ax.set_xticklabels([f"{tick:g}" for tick in _TICKS], fontsize=7)
     for gain in GAINS:

@@ -7,7 +7,7 @@ import numpy as np
 
 from fes_mj.budget.budget import ErrorBudget, Share, Spread, error_budget, shares, together, unknowns
 from fes_mj.budget.power import UncertainPower
-from fes_mj.budget.unknowns import LAG, SPEED, priors
+from fes_mj.budget.unknowns import priors
 from fes_mj.common.arrays import FloatArray
 from fes_mj.common.console import track
 from fes_mj.moments.joint_moments import GROUPS
@@ -18,23 +18,16 @@ from fes_mj.statics.turn import QuasiStatic
 
 DRAWS = 1000  # of each unknown: a standard deviation is known to 2 % of itself
 TIMES = 8  # each comes up in the rows of all together: a probability of one half is known to 0.6 %
-# What is left out, hence as the paper has it, in each case.
-CASES = {
-    "as the paper: the same at any speed, at once": (SPEED, LAG),
-    "with a lag": (SPEED,),
-    "with a lag and speed dependence": (),
-}
-FREE, FULL = (next(iter(CASES)), [*CASES][-1])
 GAINS = (1.25, 1.5, 2.0)  # power per the TRT's
 UNKNOWNS = [*priors()]  # the last draws nothing
 
 
 class Drawn(NamedTuple):
-    """Of one design and group. powers: by case, W, shape (DRAWS * TIMES,). shares: of the first and last case."""
+    """Of one design and group. powers: with all drawn, W, shape (DRAWS * TIMES,). shares: by unknown."""
 
     budget: ErrorBudget
-    powers: dict[str, FloatArray]
-    shares: dict[str, dict[str, Share]]
+    powers: FloatArray
+    shares: dict[str, Share]
 
 
 Budgets = dict[tuple[str, str], Drawn]
@@ -46,15 +39,10 @@ def draw_all(static: dict[tuple[str, str], QuasiStatic], silent: bool) -> Budget
 
 
 def _drawn(result: QuasiStatic) -> Drawn:
-    budget, uncertain, names = error_budget(result, draws=DRAWS), UncertainPower(result, DRAWS), unknowns(result)
+    budget, uncertain = error_budget(result, draws=DRAWS), UncertainPower(result, DRAWS)
     assert budget is not None
-    rows = together(names, DRAWS, TIMES)
-    powers = dict(zip(CASES, uncertain.at(rows, *CASES.values())[1:], strict=True))
-    blame = {
-        case: shares(lambda rows: uncertain.at(rows)[0], [name for name in names if name not in CASES[case]], DRAWS)
-        for case in (FREE, FULL)
-    }
-    return Drawn(budget, powers, blame)
+    powers = uncertain.at(together(unknowns(), DRAWS, TIMES))
+    return Drawn(budget, powers, shares(uncertain.at, unknowns(), DRAWS))
 
 
 @table("priors")
@@ -63,44 +51,41 @@ def prior_table() -> Rows:
     return [(name, row["prior"], row["source"]) for name, row in priors().items()]
 
 
-@table("contributions", unknown=UNKNOWNS, case=[*CASES])
+@table("contributions", unknown=UNKNOWNS)
 def contribution_table(budgets: Budgets) -> Rows:
-    """Standard deviation by each unknown alone, and mean and standard deviation of all together in each case."""
+    """Standard deviation by each unknown alone, and mean and standard deviation of all together."""
     for (name, group), drawn in budgets.items():
-        spreads = {case: Spread.of(powers) for case, powers in drawn.powers.items()}
-        turning = 100 * (1 - spreads[FULL].failed / (DRAWS * TIMES))
-        cells = [with_sd(spread.mean, spread.sd, 1) for spread in spreads.values()]
-        yield name.upper(), group, *drawn.budget.by.values(), *cells, turning
+        spread = Spread.of(drawn.powers)
+        turning = 100 * (1 - spread.failed / (DRAWS * TIMES))
+        yield name.upper(), group, *drawn.budget.by.values(), with_sd(spread.mean, spread.sd, 1), turning
 
 
 @table("blame", unknown=UNKNOWNS[:-1])
 def share_table(budgets: Budgets) -> Rows:
     """Sobol's shares of the variance, of first and total order."""
     for (name, group), drawn in budgets.items():
-        for case, blame in drawn.shares.items():
-            cells = {name: f"{max(0.0, 100 * of.first):.0f} / {100 * of.total:.0f}" for name, of in blame.items()}
-            largest = max(share.total_error for share in blame.values())
-            yield name.upper(), group, case, *map(cells.get, UNKNOWNS[:-1]), 100 * largest
+        cells = (f"{max(0.0, 100 * of.first):.0f} / {100 * of.total:.0f}" for of in drawn.shares.values())
+        yield name.upper(), group, *cells, 100 * max(share.total_error for share in drawn.shares.values())
 
 
-def ratios(budgets: Budgets, name: str, group: str, case: str, base: str = "trt") -> FloatArray:
+def ratios(budgets: Budgets, name: str, group: str, base: str = "trt") -> FloatArray:
     """Power per another design's on the same draws; NaN where either does not turn."""
-    return np.asarray(budgets[name, group].powers[case] / budgets[base, group].powers[case])
+    return np.asarray(budgets[name, group].powers / budgets[base, group].powers)
 
 
 @table("probability", gain=[f"{100 * (gain - 1):.0f}" for gain in GAINS])
 def probability_table(budgets: Budgets) -> Rows:
     """How probably each six-bar beats the TRT by so much; what does not turn beats nothing."""
-    for name, group, case in product(SIX_BARS, GROUPS, CASES):
-        ratio = ratios(budgets, name, group, case)
+    for name, group in product(SIX_BARS, GROUPS):
+        ratio = ratios(budgets, name, group)
         spread = Spread.of(ratio)
         chances = (100 * float(np.mean(ratio > gain)) for gain in GAINS)
-        yield name.upper(), group, case, with_sd(spread.mean, spread.sd), *chances
+        yield name.upper(), group, with_sd(spread.mean, spread.sd), *chances
 
 
 @table("better")
 def better_table(budgets: Budgets) -> Rows:
     """How probably D1, the paper's choice, delivers more than each other six-bar."""
-    for group, case in product(GROUPS, CASES):
-        others = (ratios(budgets, "d1", group, case, other) for other in ("r1", "r2", "d2"))
-        yield group, case, *(100 * float(np.mean(ratio > 1)) for ratio in others)
+    for group in GROUPS:
+        others = (ratios(budgets, "d1", group, other) for other in ("r1", "r2", "d2"))
+        yield group, *(100 * float(np.mean(ratio > 1)) for ratio in others)

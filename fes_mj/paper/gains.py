@@ -1,6 +1,5 @@
-"""How much of each gain is real: at equal joint speed, with Hill's relation, how smooth the power is, what was held."""
+"""How much of each gain is real: at equal joint speed, how smooth the power is, what was held."""
 
-from dataclasses import replace
 from itertools import product
 
 import numpy as np
@@ -13,7 +12,6 @@ from fes_mj.linkage.legs import TWO_LEGS
 from fes_mj.linkage.variables import LENGTHS, lengths, with_lengths
 from fes_mj.moments.files import load_moments
 from fes_mj.moments.joint_moments import GROUPS, JointMoments
-from fes_mj.moments.torque_velocity import load_torque_velocity
 from fes_mj.moments.uncertainty import with_sd
 from fes_mj.paper.captions import Rows, table
 from fes_mj.paper.printed import SIX_BARS
@@ -35,37 +33,14 @@ _CM = 100.0  # in a metre
 
 @table("speed")
 def knee_speed_table(runs: Runs) -> Rows:
-    """Gain over the TRT as the paper has it, at the TRT's mean knee speed, and with Hill's relation."""
+    """Gain over the TRT as the paper has it, and at the TRT's mean knee speed."""
     for name, group in product(SIX_BARS, GROUPS):
-        result, trt, hill = runs.static[name, group], runs.static["trt", group], runs.hill[name, group]
+        result, trt = runs.static[name, group], runs.static["trt", group]
         knee_speed = joint_speed(trt, "knee")[0]
-        pairs = ((result, trt), (at_knee_speed(result, knee_speed), trt), (hill, runs.hill["trt", group]))
-        gains = (with_sd(own.power_mean / base.power_mean, ratio_sd(own, base)) for own, base in pairs)
+        geared = (result, at_knee_speed(result, knee_speed))
+        gains = (with_sd(own.power_mean / trt.power_mean, ratio_sd(own, trt)) for own in geared)
         speed = joint_speed(result, "knee")[0] / knee_speed
-        yield name.upper(), group, speed, *gains, with_sd(hill.power_mean, hill.power_sd, 1)
-
-
-@table("hill", gain=[f"{name.upper()} {group}" for name, group in product(SIX_BARS, GROUPS)])
-def hill_table(runs: Runs) -> Rows:
-    """Gain with Hill's relation under other parameters."""
-    hill = load_torque_velocity("hill")
-    faster = {joint: 2 * speed for joint, speed in hill.max_speed.items()}
-    slower = {joint: speed / 2 for joint, speed in hill.max_speed.items()}
-    cases = {
-        "as shipped": hill,
-        "muscles twice as fast": replace(hill, max_speed=faster),
-        "muscles half as fast": replace(hill, max_speed=slower),
-        "curvature 0.5 (flatter)": replace(hill, curvature=0.5),
-        "curvature 0.15": replace(hill, curvature=0.15),
-        "eccentric plateau 1.1": replace(hill, eccentric_plateau=1.1),
-        "eccentric plateau 1.8": replace(hill, eccentric_plateau=1.8),
-    }
-    for title, relation in cases.items():
-        powers = {}
-        for (name, group), static in runs.static.items():
-            moments = replace(static.moments, torque_velocity=relation)
-            powers[name, group] = quasi_static(static.design, moments, static.cadence, points=720).power_mean
-        yield title, *(powers[name, group] / powers["trt", group] for name, group in product(SIX_BARS, GROUPS))
+        yield name.upper(), group, speed, *gains
 
 
 @table("smoothness", mass=f"{TRICYCLE_MASS:g}")

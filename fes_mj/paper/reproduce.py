@@ -65,7 +65,7 @@ def _pages(runs: Runs) -> dict[str, list[Table]]:
     ranges, of_powers = identification.ranges_table(), (tables.power_table, tables.gain_table, tables.motion_table)
     criteria = (metrics.size_table, metrics.continuity_table, metrics.distribution_table, metrics.ranking_table)
     rides = (riding.speed_table, riding.start_table, riding.gear_table, riding.transmission_table)
-    of_gains = (gains.knee_speed_table, gains.hill_table, gains.smoothness_table)
+    of_gains = (gains.knee_speed_table, gains.smoothness_table)
     budget = (
         *(error_budget.contribution_table, error_budget.share_table),
         *(error_budget.probability_table, error_budget.better_table),
@@ -92,9 +92,7 @@ def require_ours(folder: Path) -> None:
 
 def inputs() -> list[Path]:
     """The data files that the results depend on."""
-    shared = [
-        DATA / f"{name}.toml" for name in ("paper", "evidence", "error_budget", "riders", "text", "torque_velocity")
-    ]
+    shared = [DATA / f"{name}.toml" for name in ("paper", "evidence", "error_budget", "riders", "text")]
     return [*shared, *sorted((DATA / "designs").glob("*/*")), *sorted((DATA / "moments").iterdir())]
 
 

@@ -1,7 +1,6 @@
 """What free riding says about the paper's designs: how fast, how evenly, from where and up what they ride.
 
-Errors are the scatter over muscles drawn from what is known of them: a curve of the recovered moments and a relation of
-Hill's prior, each drawn anew. Nothing here is linear in either.
+Errors are the scatter over curves drawn from what is known of the recovered moments. Nothing here is linear in them.
 """
 
 from collections.abc import Callable, Sequence
@@ -20,7 +19,6 @@ from fes_mj.linkage.design import Design
 from fes_mj.linkage.design_file import DESIGNS, load_design
 from fes_mj.moments.files import load_moments, sampled_moments
 from fes_mj.moments.joint_moments import GROUPS, JointMoments
-from fes_mj.moments.torque_velocity import drawn_relations, load_torque_velocity
 from fes_mj.moments.uncertainty import with_sd
 from fes_mj.paper.captions import Rows, table
 from fes_mj.riding.ride import TRANSMISSIONS, Ride, Road, balancing_slope
@@ -35,7 +33,6 @@ SHORT = 20.0  # s: what rides so long from rest goes on
 RATIOS = np.geomspace(0.125, 4.0, 21)  # times the design's own gear ratio
 SLOPES = (0.0, 0.02)  # on which the best gear ratio is sought
 AT_END = " (end of the range)"
-SEED = 2007
 THREADS = 2  # the compiled solver lets others run beside it
 
 
@@ -79,9 +76,7 @@ def ride_all(silent: bool) -> list[Riding]:
 
 def _muscles(group: str) -> list[JointMoments]:
     """The best known, then DRAWS others."""
-    best, drawn = load_torque_velocity("hill"), drawn_relations("hill", DRAWS, SEED)
-    curves = [load_moments(group), *sampled_moments(group, DRAWS)]
-    return [curve.at_speed(relation) for curve, relation in zip(curves, [best, *drawn], strict=True)]
+    return [load_moments(group), *sampled_moments(group, DRAWS)]
 
 
 def _riding(design: Design, group: str, muscles: list[JointMoments], transmission: str) -> Riding:

@@ -13,7 +13,6 @@ from fes_mj.fit.population import PopulationFit, fit_population
 from fes_mj.linkage.design_file import DESIGNS, load_design
 from fes_mj.moments.files import load_moments
 from fes_mj.moments.joint_moments import GROUPS
-from fes_mj.moments.torque_velocity import load_torque_velocity
 from fes_mj.paper import error_budget, identification, riding
 from fes_mj.paper.evidence import load_evidence
 from fes_mj.paper.known import Known, known
@@ -22,16 +21,14 @@ from fes_mj.statics.turn import QuasiStatic, quasi_static
 
 @dataclass(frozen=True)
 class Runs:
-    """By (design, group): statics with identified and with printed dimensions (where the print can turn), with
-    Hill's torque-velocity relation, and the checked simulations by (design, group, legs). Who can ride, by design,
-    and how they ride. What each unknown contributes, by (design, group). What is known of the moments, and
-    what other readings of the paper come to.
+    """By (design, group): statics with identified and with printed dimensions (where the print can turn), and the
+    checked simulations by (design, group, legs). Who can ride, by design, and how they ride. What each unknown
+    contributes, by (design, group). What is known of the moments, and what other readings of the paper come to.
     """
 
     known: Known
     static: dict[tuple[str, str], QuasiStatic]
     printed: dict[tuple[str, str], QuasiStatic]
-    hill: dict[tuple[str, str], QuasiStatic]
     dynamic: dict[tuple[str, str, int], Case]
     people: dict[str, PopulationFit]
     rides: list[riding.Riding]
@@ -42,13 +39,12 @@ class Runs:
 def run_all(silent: bool) -> Runs:
     """Solve and simulate everything, with a bar for each kind of run unless `silent`."""
     readings, rides = identification.read_all(silent), riding.ride_all(silent)
-    moments, hill = {group: load_moments(group) for group in GROUPS}, load_torque_velocity("hill")
-    static, printed, fast = {}, {}, {}
+    moments = {group: load_moments(group) for group in GROUPS}
+    static, printed = {}, {}
     dynamic: dict[tuple[str, str, int], Case] = {}
     for name, group in product(DESIGNS, GROUPS):
         key, design = (name, group), load_design(name)
         static[key] = quasi_static(design, moments[group])
-        fast[key] = quasi_static(design, moments[group].at_speed(hill))
         with suppress(AssemblyError):
             printed[key] = quasi_static(load_design(name, "printed"), moments[group])
         dynamic |= {(*key, legs): Case(design, moments[group], legs=legs) for legs in (1, 2)}
@@ -58,7 +54,7 @@ def run_all(silent: bool) -> Runs:
         name: fit_population(load_design(name), moments[GROUPS[0]]) for name in track(DESIGNS, "populations", silent)
     }
     budgets = error_budget.draw_all(static, silent)
-    return Runs(known(load_evidence()), static, printed, fast, dynamic, people, rides, budgets, readings)
+    return Runs(known(load_evidence()), static, printed, dynamic, people, rides, budgets, readings)
 
 
 def joint_speed(result: QuasiStatic, joint: str) -> tuple[float, float]:

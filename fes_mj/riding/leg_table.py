@@ -25,32 +25,30 @@ CELL_TOLERANCE, STEP_TOLERANCE = 1e-5, 1e-4
 LEAST_PUSH = 1e-3  # N m, of moments that are next to nothing
 MOST_CELLS = 64 * POINTS
 LONGEST_STEP = math.radians(2.0)
-# With a lag commands are given ahead of the crank angle, and their breaks lie anywhere in a step.
-LONGEST_WITH_LAG = math.radians(1.0)
 
 
 class LegTable(NamedTuple):
     """Over uniform crank angles of a turn, the last axis, the first repeated at its end: cells + 1.
 
-    masses: of both legs together, each of shape (cells + 1,). joint_rate: per crank speed, and command: N m
-    (Drive.command), by muscle_response.MUSCLES, shape (4, cells + 1). ahead, behind: crank angles at which a step that
+    masses: of both legs together, each of shape (cells + 1,). joint_rate: per crank speed, and moment: N m,
+    by lookup.DRIVEN, shape (4, cells + 1). ahead, behind: crank angles at which a step that
     begins in the cell after a row ends at the latest, rad, shape (cells,).
     """
 
     masses: CrankInertia
     joint_rate: FloatArray
-    command: FloatArray
+    moment: FloatArray
     ahead: FloatArray
     behind: FloatArray
 
 
 @lru_cache(maxsize=32)
-def leg_table(design: Design, moments: JointMoments, lag: float = 0.0, fineness: int = 1) -> LegTable:
-    """The table of a design. lag: time constant of the muscles' answer, s. fineness: divides cells and steps.
+def leg_table(design: Design, moments: JointMoments, fineness: int = 1) -> LegTable:
+    """The table of a design. fineness: divides cells and steps.
 
     Raises InputError where not even MOST_CELLS are enough.
     """
-    cells, legs = POINTS, _legs(design, moments, lag, POINTS)
+    cells, legs = POINTS, _legs(design, moments, POINTS)
     while _cell_error(legs.curves) > CELL_TOLERANCE:
         cells *= 2
         if cells > MOST_CELLS:
@@ -58,15 +56,14 @@ def leg_table(design: Design, moments: JointMoments, lag: float = 0.0, fineness:
                 f"{design.name}: a ride needs more than {MOST_CELLS:,} crank angles a turn; keep the links farther "
                 "from their dead centres"
             )
-        legs = _legs(design, moments, lag, cells)
-    longest = LONGEST_WITH_LAG if lag else LONGEST_STEP
-    there, back = _steps(legs, longest), _steps(legs.mirrored, longest)
+        legs = _legs(design, moments, cells)
+    there, back = _steps(legs), _steps(legs.mirrored)
     if fineness > 1:
-        legs = _legs(design, moments, lag, fineness * cells)
+        legs = _legs(design, moments, fineness * cells)
     rows, cell = np.arange(fineness * cells), 2 * np.pi / (fineness * cells)
     ahead = rows + np.minimum(np.repeat(there, fineness), legs.room)
     behind = rows + 1 - np.minimum(np.repeat(back, fineness), legs.mirrored.room)[::-1]
-    closed = CrankInertia(*map(_closed, legs.masses)), _closed(legs.joint_rate), _closed(legs.command)
+    closed = CrankInertia(*map(_closed, legs.masses)), _closed(legs.joint_rate), _closed(legs.moment)
     return LegTable(*closed, cell * ahead, cell * behind)
 
 
@@ -78,7 +75,7 @@ class _Legs(NamedTuple):
 
     masses: CrankInertia
     joint_rate: FloatArray
-    command: FloatArray
+    moment: FloatArray
     breaks: BoolArray
     curves: FloatArray
 
@@ -95,8 +92,8 @@ class _Legs(NamedTuple):
         return np.asarray(ends[np.searchsorted(ends, np.arange(count), "right")] - np.arange(count))
 
 
-def _legs(design: Design, moments: JointMoments, lag: float, cells: int) -> _Legs:
-    drives = {leg: drive(design, moments.of_leg(leg.prefix), lag, cells) for leg in TWO_LEGS}
+def _legs(design: Design, moments: JointMoments, cells: int) -> _Legs:
+    drives = {leg: drive(design, moments.of_leg(leg.prefix), cells) for leg in TWO_LEGS}
     masses = CrankInertia(
         *(
             np.asarray(sum(delayed(curve, leg.lag) for leg, curve in zip(drives, curves, strict=True)))
@@ -104,12 +101,12 @@ def _legs(design: Design, moments: JointMoments, lag: float, cells: int) -> _Leg
         )
     )
     rate = np.array([delayed(own.motion.joint_rate[joint], leg.lag) for leg, own in drives.items() for joint in JOINTS])
-    command = np.array([delayed(own.command[joint], leg.lag) for leg, own in drives.items() for joint in JOINTS])
+    moment = np.array([delayed(own.moment[joint], leg.lag) for leg, own in drives.items() for joint in JOINTS])
     breaks = np.logical_or.reduce([delayed(own.breaks, leg.lag) for leg, own in drives.items()])
-    push = (rate * command).sum(axis=0)
+    push = (rate * moment).sum(axis=0)
     work = 2 * np.pi * max(float(np.abs(push).mean()), LEAST_PUSH)
     inertia, recoil = masses.inertia_rate / masses.inertia.max(), masses.recoil_rate / np.abs(masses.recoil).max()
-    return _Legs(masses, rate, command, breaks, np.array([push / work, inertia, recoil]))
+    return _Legs(masses, rate, moment, breaks, np.array([push / work, inertia, recoil]))
 
 
 def _cell_error(curves: FloatArray) -> float:
@@ -118,7 +115,7 @@ def _cell_error(curves: FloatArray) -> float:
     return float(np.abs(first - 2 * middle + last).sum(axis=1).max() * np.pi / curves.shape[1] / 3)
 
 
-def _steps(legs: _Legs, longest: float) -> IntArray:
+def _steps(legs: _Legs) -> IntArray:
     """Longest step forward from each row, in cells: Simpson's rule against the cells' straight lines."""
     curves, count, room = legs.curves, len(legs.breaks), legs.room
     cell, rows = 2 * np.pi / count, np.arange(count)
@@ -126,7 +123,7 @@ def _steps(legs: _Legs, longest: float) -> IntArray:
     integral = np.zeros(twice.shape)
     np.cumsum((twice[:, :-1] + twice[:, 1:]) * (cell / 2), axis=1, out=integral[:, 1:])
     steps, good, size = np.ones(count, int), np.ones(count, bool), 2
-    while size * cell <= longest:
+    while size * cell <= LONGEST_STEP:
         ahead = np.minimum(size, room)
         end, below, above = rows + ahead, rows + ahead // 2, rows + (ahead + 1) // 2
         simpson = (twice[:, rows] + 2 * (twice[:, below] + twice[:, above]) + twice[:, end]) * (ahead * cell / 6)

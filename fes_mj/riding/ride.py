@@ -68,9 +68,8 @@ class Load(NamedTuple):
 class Ride(Brief):
     """A design with both legs on a road, driven by joint moments that follow the crank angle.
 
-    transmission: one of TRANSMISSIONS. lag: time constant of the muscles' answer, s. launch: speed at the start, m/s; 0
-    is a start from rest. start: crank angle there, rad. duration: s. Whether the moments depend on joint speed is up
-    to moments.torque_velocity.
+    transmission: one of TRANSMISSIONS. launch: speed at the start, m/s; 0 is a start from rest. start: crank angle
+    there, rad. duration: s.
 
     >>> fes_mj.Ride(fes_mj.load_design("d1"), fes_mj.load_moments("p1p2"), duration=20)
     <Ride d1 p1p2 freewheel 0 %>
@@ -80,7 +79,6 @@ class Ride(Brief):
     moments: JointMoments
     road: Road = field(default_factory=Road)
     transmission: str = "freewheel"
-    lag: float = 0.0
     launch: float = TRICYCLE_SPEED
     start: float = 0.0
     duration: float = 60.0
@@ -124,19 +122,16 @@ class Ride(Brief):
 
     @property
     def table(self) -> LegTable:
-        """Masses and commands of both legs over the crank angle."""
-        return leg_table(self.design, self.moments, self.lag)
+        """Masses and moments of both legs over the crank angle."""
+        return leg_table(self.design, self.moments)
 
     def summary(self) -> dict[str, Any]:
         """What is ridden as JSON names and units it."""
-        relation = self.moments.torque_velocity
         return {
             "design": self.design.name,
             "group": self.moments.name,
-            "torque_velocity": relation.name if relation else None,
             "transmission": self.transmission,
             "slope_percent": 100 * self.road.slope,
-            "lag_s": self.lag,
             "launch_kmh": self.launch / KMH,
             "start_deg": math.degrees(self.start),
             "duration_s": self.duration,
@@ -144,14 +139,14 @@ class Ride(Brief):
 
 
 def balancing_slope(ride: Ride, speed: float = TRICYCLE_SPEED) -> float:
-    """Slope (rise per run) on which the mean power of speed-free muscles just keeps a steady speed (m/s).
+    """Slope (rise per run) on which the mean power just keeps a steady speed (m/s).
 
     Statics of a crank at constant speed: what the mean power of both legs leaves after rolling resistance and air.
     Raises InputError as quasi_static, and where that power would climb a wall.
     """
     cadence = speed / ride.travel
-    legs = (replace(ride.moments.of_leg(leg.prefix), torque_velocity=None) for leg in TWO_LEGS)
-    power = sum(quasi_static(ride.design, moments, cadence).power_mean for moments in legs)
+    moments = (ride.moments.of_leg(leg.prefix) for leg in TWO_LEGS)
+    power = sum(quasi_static(ride.design, own, cadence).power_mean for own in moments)
     level = replace(ride, road=replace(ride.road, slope=0.0)).load
     rolling = ride.road.rolling_resistance
     # rolling cos b + sin b = sqrt(1 + rolling^2) sin(b + atan rolling)
@@ -167,10 +162,10 @@ _BISECTIONS = 40  # of the energy: what is left of the interval is rounding
 def steady_ripple(ride: Ride) -> float:
     """Largest less smallest crank speed per its mean, once a fixed gear rides evenly at the ride's launch speed.
 
-    Against a constant force that takes the mean power, and with moments as they are at rest; see even_ripple.
+    Against a constant force that takes the mean power; see even_ripple.
     """
     table = ride.table
-    drive = (table.joint_rate * table.command).sum(axis=0)
+    drive = (table.joint_rate * table.moment).sum(axis=0)
     turn = slice(-1)
     return float(even_ripple(ride, drive[turn], CrankInertia(*(curve[turn] for curve in table.masses))))
 

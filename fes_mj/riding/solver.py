@@ -16,8 +16,8 @@ from typing import Any, NamedTuple
 
 from fes_mj.common.machine_code import kept_machine_code, machine_code, sources
 from fes_mj.linkage.inertia import CrankInertia
-from fes_mj.moments.muscle_response import MUSCLES, Response, between, delivered, lead, place
 from fes_mj.riding.leg_table import LegTable, leg_table
+from fes_mj.riding.lookup import DRIVEN, between, place
 from fes_mj.riding.ride import Load, Ride
 
 TOUCH = 1e-12  # m/s: rounding, by which a crank that has just caught up may be too fast or too slow
@@ -25,7 +25,7 @@ STANDING = 1e-9  # rad/s: a crank that is slower takes no step by its angle
 NEAR = 1e-9  # rad: rounding, by which a step may miss the end of a cell
 LONGEST, LONGEST_FREE = 0.016, math.radians(1.0)  # s, of a step: where the crank is slow; rad: where it runs free
 HALVINGS = 14  # of a step, to find an event in it
-COUNT = len(MUSCLES)
+COUNT = len(DRIVEN)
 
 
 class System(NamedTuple):
@@ -34,7 +34,6 @@ class System(NamedTuple):
     """
 
     table: LegTable
-    response: Response
     load: Load
     fixed: bool
     travel: float
@@ -43,7 +42,7 @@ class System(NamedTuple):
 
 
 class State(NamedTuple):
-    """Angles in rad, speeds in rad/s and m/s, work since the start in J; answers: moments at rest of MUSCLES, N m."""
+    """Angles in rad, speeds in rad/s and m/s, work since the start in J."""
 
     crank_angle: float
     crank_speed: float
@@ -51,11 +50,10 @@ class State(NamedTuple):
     speed: float
     muscle_work: float
     road_work: float
-    answers: tuple[float, float, float, float]
 
 
 # What is kept of a state at each step: fields of a Trace.
-SAMPLE = ("time", "coasting", *State._fields[:-1])
+SAMPLE = ("time", "coasting", *State._fields)
 
 
 class Mode(NamedTuple):
@@ -67,15 +65,13 @@ class Mode(NamedTuple):
 
 def system(ride: Ride, fineness: int) -> System:
     """The equation of motion of a ride. fineness: divides steps and the table's cells."""
-    table = leg_table(ride.design, ride.moments, ride.lag, fineness)
-    response = Response.of(ride.moments, ride.lag)
-    return System(table, response, ride.load, ride.fixed, ride.travel, LONGEST / fineness, LONGEST_FREE / fineness)
+    table = leg_table(ride.design, ride.moments, fineness)
+    return System(table, ride.load, ride.fixed, ride.travel, LONGEST / fineness, LONGEST_FREE / fineness)
 
 
 @machine_code
 def moved(state: State, rates: State, time: float) -> State:
     """A state, and so much time along its rates."""
-    old, new = state.answers, rates.answers
     return State(
         state.crank_angle + time * rates.crank_angle,
         state.crank_speed + time * rates.crank_speed,
@@ -83,51 +79,19 @@ def moved(state: State, rates: State, time: float) -> State:
         state.speed + time * rates.speed,
         state.muscle_work + time * rates.muscle_work,
         state.road_work + time * rates.road_work,
-        (old[0] + time * new[0], old[1] + time * new[1], old[2] + time * new[2], old[3] + time * new[3]),
     )
-
-
-@machine_code
-def commands(system: System, row: int, part: float) -> tuple[float, float, float, float]:
-    """Moments at rest that MUSCLES are commanded at a place of the table, N m."""
-    curves = system.table.command
-    return (
-        between(curves[0], row, part),
-        between(curves[1], row, part),
-        between(curves[2], row, part),
-        between(curves[3], row, part),
-    )
-
-
-@machine_code
-def ahead(system: System, angle: float, speed: float) -> tuple[int, float]:
-    """The place of the table whose commands are given at a crank angle and speed."""
-    return place(angle + lead(system.response, speed), len(system.table.ahead))
 
 
 @machine_code
 def rates_of(system: System, state: State, mode: Mode) -> tuple[State, float]:
     """Rates of a state, and T where the transmission is engaged (N m), elsewhere the wheel's push (N)."""
-    table, response, load = system.table, system.response, system.load
+    table, load = system.table, system.load
     masses, speed, travelling = table.masses, state.crank_speed, state.speed
     row, part = place(state.crank_angle, len(table.ahead))
     inertia, recoil = between(masses.inertia, row, part), between(masses.recoil, row, part)
-    lag, answering = response.lag, (0.0, 0.0, 0.0, 0.0)
-    if lag > 0:
-        moments = now = state.answers
-        command = commands(system, *ahead(system, state.crank_angle, speed))
-        answering = (
-            (command[0] - now[0]) / lag,
-            (command[1] - now[1]) / lag,
-            (command[2] - now[2]) / lag,
-            (command[3] - now[3]) / lag,
-        )
-    else:
-        moments = commands(system, row, part)
     drive = 0.0
-    for muscle in range(COUNT):
-        rate = between(table.joint_rate[muscle], row, part)
-        drive += rate * delivered(response, muscle, moments[muscle], rate * speed)
+    for joint in range(COUNT):
+        drive += between(table.joint_rate[joint], row, part) * between(table.moment[joint], row, part)
     # the road is tilted by tilting gravity: backwards along it, and upright on it
     weight = load.upright * between(masses.height_rate, row, part) - load.along * recoil
     crank = drive - weight - between(masses.inertia_rate, row, part) / 2 * speed * speed
@@ -150,7 +114,7 @@ def rates_of(system: System, state: State, mode: Mode) -> tuple[State, float]:
     else:
         turning, rolling = crank / inertia, 0.0
         push = recoil * turning + wheel
-    return State(speed, turning, travelling, rolling, drive * speed, resistance * travelling, answering), push
+    return State(speed, turning, travelling, rolling, drive * speed, resistance * travelling), push
 
 
 @machine_code
@@ -226,7 +190,7 @@ def to_event(system: System, start: State, first: State, mode: Mode, longest: fl
             crank_speed = 0.0
     if not mode.engaged and crank_speed * system.travel > speed:
         crank_speed = speed / system.travel
-    still = (end.distance, speed, end.muscle_work, end.road_work, end.answers)
+    still = (end.distance, speed, end.muscle_work, end.road_work)
     return State(end.crank_angle, crank_speed, *still), latest
 
 
@@ -255,12 +219,9 @@ def advance(
 ) -> tuple[int, State, Mode, float]:
     """Fill rows with SAMPLE at the start of each step, and at last at the end of the ride.
 
-    clock: s; at 0 the ride begins, its muscles as they are commanded. Returns how many rows there are, state, mode and
-    clock at their end.
+    clock: s; at 0 the ride begins. Returns how many rows there are, state, mode and clock at their end.
     """
     if clock == 0:
-        begun = (state.crank_angle, state.crank_speed, state.distance, state.speed, state.muscle_work, state.road_work)
-        state = State(*begun, commands(system, *ahead(system, state.crank_angle, state.crank_speed)))
         mode = mode_of(system, state)
     rates, _ = rates_of(system, state, mode)
     count = 0

@@ -22,7 +22,7 @@ LAST_TURNS = 5  # whole turns at the end, over which a ride is described
 # friction stops it within a hundredth of a second of the former.
 LEAST_SPEED, LEAST_ADVANCE = 1e-3, 1e-5  # m/s, m
 SPLINE = 4  # samples on either side of a crank angle at which speeds are read
-STANDS, LAGS = 1.0, 10.0  # s, and lags, after which a tricycle that stands does so for good
+STANDS = 1.0  # s, after which a tricycle that stands does so for good
 ROWS = 16384  # samples that are made before Python looks at them
 MOST_ROWS = 2**21  # an hour of fast riding; beyond it something is wrong
 
@@ -185,7 +185,7 @@ def ride(ride: Ride, fineness: int = 1) -> Trace:
     for leg in TWO_LEGS:
         turning_in_range(ride.design, ride.moments.of_leg(leg.prefix).measured_on)
     system = readable(solver.system(ride, fineness))
-    start = float(ride.start), ride.launch / ride.travel, 0.0, float(ride.launch), 0.0, 0.0, (0.0, 0.0, 0.0, 0.0)
+    start = float(ride.start), ride.launch / ride.travel, 0.0, float(ride.launch), 0.0, 0.0
     state, mode, clock, until = solver.State(*start), solver.Mode(True, 0), 0.0, float(ride.duration)
     samples = np.empty((0, len(solver.SAMPLE)))
     while clock < until:
@@ -207,9 +207,8 @@ def nothing_more(
 ) -> BoolArray:
     """Whether a ride is over: the crank has turned back by a whole turn, or everything has stood still for long.
 
-    After that turn, driven by wheel or legs, it is again where it was, only faster; what stands still does so as long
-    as the muscles' answers do not change.
+    After that turn, driven by wheel or legs, it is again where it was, only faster.
     """
     back = np.maximum.accumulate(crank_angle) - crank_angle > 2 * np.pi
     moved = np.maximum.accumulate(np.where((speed != 0) | (crank_speed != 0), time, 0.0))
-    return np.asarray(back | (time - moved > STANDS + LAGS * ride.lag))
+    return np.asarray(back | (time - moved > STANDS))

@@ -7,7 +7,7 @@ import numpy as np
 
 from fes_mj.common.units import KMH, RPM
 from fes_mj.linkage.joints import JOINTS
-from fes_mj.moments.muscle_response import MUSCLES
+from fes_mj.riding.lookup import DRIVEN
 from fes_mj.riding.trace import LEAST_ADVANCE, Trace
 
 RIDES, STOPS, DOES_NOT_START, COASTS, NO_AGREEMENT = "rides", "stops", "does-not-start", "coasts", "no-agreement"
@@ -45,7 +45,7 @@ def _obstacle(trace: Trace) -> str:
     """What a ride that stopped could not pass."""
     ride, table, stop = trace.ride, trace.ride.table, trace.stop or 0
     angle = float(trace.crank_angle[stop])
-    push = (table.joint_rate * table.command).sum(axis=0)[:-1]
+    push = (table.joint_rate * table.moment).sum(axis=0)[:-1]
     asked = ride.travel * (ride.load.rolling + ride.load.climb)
     still = "the crank never turned: " if abs(angle - ride.start) < NOT_AT_ALL else ""
     if push.mean() <= asked:
@@ -68,7 +68,7 @@ def outside_known(trace: Trace) -> list[str]:
         beyond.append(f"{cadence / RPM:.0f} rpm, where nothing beyond {FASTEST_CADENCE / RPM:.0f} rpm is known")
     turn = np.linspace(0, 2 * np.pi, len(ride.table.ahead) + 1)
     for joint in JOINTS:
-        rates = [ride.table.joint_rate[row] for row, muscle in enumerate(MUSCLES) if muscle[1] == joint]
+        rates = [ride.table.joint_rate[row] for row, driven in enumerate(DRIVEN) if driven[1] == joint]
         angle, speed = trace.crank_angle[part] % (2 * np.pi), np.abs(trace.crank_speed[part])
         own = max(float((speed * np.abs(np.interp(angle, turn, rate))).max()) for rate in rates)
         reference = ride.moments.measured_on

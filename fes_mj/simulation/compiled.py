@@ -87,8 +87,6 @@ def compiled_loop(torque: TorqueMap, drives: dict[str, str]) -> Loop:
 
     It releases Python's lock: loops run side by side in threads.
     """
-    if torque.moments.torque_velocity is not None:
-        raise ValueError("the compiled loop takes moments that do not depend on speed")
     if torque.moments.left is not None:
         raise ValueError("the compiled loop takes the same moments for both legs")
     knee, hip = ((torque.parameters(joint), torque.table[joint]) for joint in JOINTS)

@@ -36,8 +36,7 @@ VARIANTS: dict[str, dict[str, Any]] = {
 }
 # Where the tricycle's inertia or its like rests on the crank, one evaluation a step keeps the energy well enough.
 LADEN = "implicitfast"
-# A motor's range per largest moment of the torque map. Muscles that lengthen under Hill's relation give 1.4 times that,
-# and a controller may want more than the muscles have.
+# A motor's range per largest moment of the torque map: a controller may want more than that.
 HEADROOM = 2.0
 RANGE_STEP = 5.0  # N m, to which ranges are rounded up
 

@@ -92,7 +92,7 @@ class DrivenTurn(Brief):
 
     @property
     def work_per_turn(self) -> float:
-        """Work of one leg on the crank in one turn, J; without a torque-velocity relation the same at any cadence."""
+        """Work of one leg on the crank in one turn, J, the same at any cadence."""
         return float(2 * np.pi * self.crank_moment.mean())
 
     @property
@@ -124,7 +124,7 @@ class QuasiStatic(DrivenTurn):
 
     @property
     def driver(self) -> str:
-        return self.moments.driver
+        return self.moments.name
 
     @property
     def moments(self) -> JointMoments:
@@ -133,7 +133,7 @@ class QuasiStatic(DrivenTurn):
     @cached_property
     def power_weights(self) -> FloatArray:
         """Mean power per Fourier coefficient of knee, then hip moment, W/(N m), shape (98,)."""
-        return power_weights(self.motion, self.cadence, self.torque)
+        return power_weights(self.motion, self.cadence, self.torque.reference)
 
     @property
     def power_sd(self) -> float | None:
@@ -161,10 +161,8 @@ class QuasiStatic(DrivenTurn):
 
     def summary(self) -> dict[str, Any]:
         """The keys that every result of a run has, as JSON names and units them."""
-        relation = self.moments.torque_velocity
         return super().summary() | {
             "group": self.moments.name,
-            "torque_velocity": relation.name if relation else None,
             "power_sd_W": self.power_sd,
             "extrapolation": self.extrapolation.verdict,
             "extrapolated_share": self.extrapolation.share,

@@ -63,7 +63,7 @@ def printed_checks(case: VerificationCase) -> Iterator[Check]:
         return
     ranges = np.array([*printed.knee_range, *printed.hip_range])
     yield case.check("joint_range", np.abs(joint_ranges(case.design) - ranges).max())
-    if case.moments.name in printed.power and case.moments.torque_velocity is None:  # the paper knows no speed
+    if case.moments.name in printed.power:
         power = case.static.work_per_turn * turns_per_second(case.design.linkage.cadence)  # printed at its own cadence
         yield case.check("printed_power", abs(power - printed.power[case.moments.name]))
 

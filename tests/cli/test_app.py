@@ -41,7 +41,6 @@ from tests.cli.conftest import result
         (["simulate", "d1", "--speed", "2"], "--speed needs --render"),
         (["explain", "loop_gap"], "explain is now `fes_mj validate --explain CHECK`"),
         (["view", "d1"], "view is now `fes_mj simulate DESIGN --view`"),
-        (["static", "d1", "--torque-velocity", "katz"], 'Invalid value "katz" for --torque-velocity'),
     ],
 )
 def test_bad_input_gets_one_message_and_exit_code_2(

@@ -50,7 +50,6 @@ def test_own_riders_are_those_of_the_file(capsys, tmp_path):
         (("--timing", "best"), "--drive"),
         ((*MUSCLES, "--duty", "0"), "duty is 0"),
         ((*MUSCLES, "--duty", "1.5"), "duty is 1.5"),
-        ((*MUSCLES, "--torque-velocity", "hill"), "--torque-velocity"),
         ((*MUSCLES, "--moments", "mine.csv"), "--muscles"),
         ((*MUSCLES, "--muscles", "nowhere.npz"), "nowhere.npz"),
     ],

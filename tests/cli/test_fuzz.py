@@ -176,12 +176,12 @@ def _fuzz_flags(seed: int, count: int, folder: Path, capsys: pytest.CaptureFixtu
     """Commands that stop at the first bad flag: nothing may run, nothing may be written."""
     source = random.Random(seed)
     flags = {
-        "static": ("--cadence", "--group", "--moments", "--dims", "--torque-velocity", "--curves", "--json"),
+        "static": ("--cadence", "--group", "--moments", "--dims", "--curves", "--json"),
         "simulate": ("--cadence", "--turns", "--legs", "--timestep", "--out", "--render", "--nonsense"),
         "export": ("-o", "--out", "--variant", "--cadence", "--dims"),
         "validate": ("--report", "--junit", "--video", "--group", "--cadence", "--moments"),
         "fit": ("--thigh", "--stature", "--sex", "--percentile", "--up", "--samples", "--out", "--population"),
-        "stimulation": ("--cadence", "--lag", "--csv", "--duty", "--dims", "--json"),
+        "stimulation": ("--cadence", "--csv", "--duty", "--dims", "--json"),
         "sing": ("--x",),
     }
     # whatever else is right, this is not, and no parser knows it

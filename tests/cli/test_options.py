@@ -9,15 +9,14 @@ from tests.cli.conftest import result
 from tests.linkage.test_design_file import written
 
 
-def test_torque_velocity_is_off_until_asked_for(capsys: pytest.CaptureFixture[str]) -> None:
-    plain, hill = (
-        json.loads(result(capsys, "static", "d1", "--json", *extra)[1]) for extra in ([], ["--torque-velocity", "hill"])
-    )
-    assert (plain["torque_velocity"], hill["torque_velocity"]) == (None, "hill")
-    assert hill["power_mean_W"] < 0.85 * plain["power_mean_W"]
-    assert "relation of Hill" in result(capsys, "static", "d1", "--torque-velocity", "hill")[1]
-    code, out, _ = result(capsys, "simulate", "d1", "--torque-velocity", "hill", "--json")
-    assert (code, json.loads(out)["agrees"]) == (0, True)
+def test_what_muscles_have_made_superfluous_names_them(capsys: pytest.CaptureFixture[str]) -> None:
+    for command in ("static", "simulate", "ride", "sweep", "stimulation"):
+        for option in (["--torque-velocity", "hill"], ["--torque-velocity=hill"], ["--lag", "0.1"]):
+            code, out, err = result(capsys, command, "d1", *option)
+            assert (code, out) == (2, "")
+            assert err.startswith(f"fes_mj: {option[0].partition('=')[0]} is gone")
+            assert "--drive muscles" in err
+            assert err.count("\n") == 1
 
 
 def test_own_design_and_own_moments_work_where_catalogue_names_do(

@@ -22,7 +22,7 @@ def test_json_of_a_ride(capsys: pytest.CaptureFixture[str]) -> None:
     assert code == 0
     assert set(content) >= KEYS
     assert (content["rides"], content["stopped_at_s"], content["agrees"]) == (True, None, True)
-    assert (content["group"], content["torque_velocity"], content["freewheel_share"]) == ("p1p3", "hill", 0)
+    assert (content["group"], content["freewheel_share"]) == ("p1p3", 0)
     # wheel of 0.66 m, crank turns per wheel turn: the transmission ties the two means together
     wheel = content["cadence_rpm"] / 60 / 2.03 * np.pi * 0.66
     assert content["speed_kmh"] / 3.6 == pytest.approx(wheel, rel=1e-3)
@@ -71,12 +71,9 @@ def test_out_writes_result_ride_and_model(capsys: pytest.CaptureFixture[str], tm
         (["--launch", "5", "--from-rest", "10"], "Mutually exclusive arguments: {--launch, --from-rest}"),
         (["--tricycle-mass", "-20"], '"-20.0" for --tricycle-mass. Must be >= 1.'),
         (["--rolling-mass", "-1"], '"-1.0" for --rolling-mass'),
-        (["--lag", "0.7"], "--lag is 0.7; it must be shorter than a turn of the crank, which takes 0.623 s in d1"),
-        (["--lag", "nan"], '"nan" for --lag'),
         (["--duration", "0"], '"0.0" for --duration. Must be >= 1.'),
         (["--crr", "2"], '"2.0" for --crr'),
         (["--drag-area", "inf"], '"inf" for --drag-area'),
-        (["--torque-velocity", "katz"], "Invalid value"),
         (["--out", "nowhere/out"], "nowhere: cannot write the results: the folder does not exist"),
     ],
 )
@@ -85,22 +82,6 @@ def test_bad_input(arguments: list[str], words: str, capsys: pytest.CaptureFixtu
     assert (code, out) == (2, "")
     assert words in err
     assert err.count("\n") == 1
-
-
-def test_own_moments_without_a_cadence(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
-    """Speed dependence and lag must know how fast the muscles were when they were measured."""
-    plain, described = tmp_path / "own.csv", tmp_path / "own.toml"
-    plain.write_text("crank_angle_deg,knee_Nm,hip_Nm\n" + "".join(f"{a},{10 - a / 20},0\n" for a in range(0, 360, 30)))
-    described.write_text('[moments]\nfile = "own.csv"\n[measured_on]\ncadence_rpm = 50\n')
-    for arguments, code in (
-        ((str(plain),), 2),
-        ((str(plain), "--torque-velocity", "none", "--lag", "0.1"), 2),
-        ((str(plain), "--torque-velocity", "none"), 0),
-        ((str(described), "--lag", "0.1"), 0),
-    ):
-        status, _, err = result(capsys, "ride", "trt", "--duration", "1", "-q", "--moments", *arguments)
-        assert status == code, err
-        assert ("depends on the cadence they were measured at" in err) == (code == 2)
 
 
 @pytest.mark.long

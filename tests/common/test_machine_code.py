@@ -14,12 +14,10 @@ from fes_mj.common.machine_code import kept_machine_code
 WITHOUT = "import sys; sys.modules['numba'] = None\n"
 RIDE = """
 import fes_mj, numpy as np
-from fes_mj.moments.torque_velocity import load_torque_velocity
 from fes_mj.riding.ride import Ride
 from fes_mj.riding.trace import ride
 from fes_mj.simulation.road import ride_on_road
-hill = fes_mj.load_moments("p1p2").at_speed(load_torque_velocity("hill"))
-one = Ride(fes_mj.load_design("d2"), hill, lag=0.05, duration=1.5)
+one = Ride(fes_mj.load_design("d2"), fes_mj.load_moments("p1p2"), duration=1.5)
 for trace in (ride(one), ride_on_road(one).trace):
     print(*(repr(float(column[-1])) for column in (trace.crank_angle, trace.speed, trace.muscle_work, trace.road_work)))
 print("numba" in sys.modules)

@@ -7,25 +7,23 @@ import pytest
 
 import fes_mj
 from fes_mj.crosscheck.ride_case import RideCase
-from fes_mj.moments.torque_velocity import load_torque_velocity
 from fes_mj.riding.ride import Ride, Road, balancing_slope
 from fes_mj.riding.trace import ride as ride_by_equation
 
 P1P2 = fes_mj.load_moments("p1p2")
-HILL, HILL_P1P3 = (fes_mj.load_moments(group).at_speed(load_torque_velocity("hill")) for group in ("p1p2", "p1p3"))
+P1P3 = fes_mj.load_moments("p1p3")
 
 
 @pytest.mark.parametrize(
     "ride",
     [
-        Ride(fes_mj.load_design("d1"), HILL, duration=4.0),
+        Ride(fes_mj.load_design("d1"), P1P2, duration=4.0),
         Ride(fes_mj.load_design("r2"), P1P2, Road(slope=0.02), "fixed", duration=4.0),
-        Ride(fes_mj.load_design("trt"), HILL, Road(slope=-0.01), launch=0.0, start=1.0, duration=6.0),
+        Ride(fes_mj.load_design("trt"), P1P2, Road(slope=-0.01), launch=0.0, start=1.0, duration=6.0),
         Ride(fes_mj.load_design("r1"), P1P2, Road(slope=0.10), duration=20.0),  # it rolls back, the crank loose
-        Ride(fes_mj.load_design("r2"), HILL, Road(slope=0.20), duration=20.0),
+        Ride(fes_mj.load_design("r2"), P1P2, Road(slope=0.20), duration=20.0),
         Ride(fes_mj.load_design("d1"), P1P2, Road(slope=0.033), duration=20.0),  # slowly through its dead centres
-        Ride(fes_mj.load_design("d2"), HILL, lag=0.1, transmission="fixed", duration=4.0),
-        Ride(fes_mj.load_design("d2"), HILL_P1P3, transmission="fixed", duration=20.0),  # it ends where the crank jerks
+        Ride(fes_mj.load_design("d2"), P1P3, transmission="fixed", duration=20.0),  # it ends where the crank jerks
     ],
     ids=lambda ride: ride.name,
 )
@@ -54,7 +52,7 @@ def test_the_balancing_slope_balances(design: fes_mj.Design) -> None:
 
 
 def test_the_ride_as_a_table() -> None:
-    case = RideCase(Ride(fes_mj.load_design("trt"), HILL, duration=1.0))
+    case = RideCase(Ride(fes_mj.load_design("trt"), P1P2, duration=1.0))
     header, *rows = case.trace_csv().splitlines()
     assert header.startswith("time_s,crank_angle_deg,")
     assert len(rows) == len(case.simulation.trace.time) == 5001

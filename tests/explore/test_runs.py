@@ -13,7 +13,6 @@ from fes_mj.explore import runs
 from fes_mj.explore.dimensions import design_of
 from fes_mj.fit.seat import fit_seat, seat_text
 from fes_mj.linkage.design import Rider
-from fes_mj.moments.torque_velocity import load_torque_velocity
 from fes_mj.muscles.riders import load_riders
 from fes_mj.muscles.timing import DUTY
 from fes_mj.optimization.problem import make_problem
@@ -41,8 +40,7 @@ def test_a_check_that_fails_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyP
 
 def test_ride(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(runs, "Ride", partial(Ride, duration=4.0))
-    moments = P1P2.at_speed(load_torque_velocity("hill"))
-    case = RideCase(Ride(D1, moments, Road(slope=0.02), transmission="fixed", duration=4.0))
+    case = RideCase(Ride(D1, P1P2, Road(slope=0.02), transmission="fixed", duration=4.0))
     run = runs.ride(D1, P1P2, tmp_path, transmission="fixed", slope=2)
     assert run["ok"] == case.agrees
     speed = case.simulation.trace.mean_speed

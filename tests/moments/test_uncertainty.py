@@ -11,7 +11,6 @@ from fes_mj.linkage.variables import lengths, replaced, with_lengths
 from fes_mj.moments.fourier import fourier
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
-from fes_mj.moments.torque_velocity import load_torque_velocity
 from fes_mj.moments.uncertainty import instant_power_weights, power_weights
 from fes_mj.paper.printed import SIX_BARS
 from fes_mj.statics.turn import difference_sd, quasi_static, ratio_sd
@@ -31,20 +30,17 @@ def drawn(moments: JointMoments, count: int) -> list[JointMoments]:
     ]
 
 
-@pytest.mark.parametrize("relation", [None, "hill"])
-def test_power_is_linear_in_the_coefficients(relation: str | None) -> None:
+def test_power_is_linear_in_the_coefficients() -> None:
     """The weights against the quasi-static solver, on random curves of few harmonics."""
     random = np.random.default_rng(1)
     few = np.tile(np.r_[1, 1, 1, 1, np.zeros(21), 1, 1, 1, np.zeros(21)], 2)
     coefficients, angle = random.normal(size=98) * few, np.radians(np.arange(0, 360, 0.1))
     curves = [fourier(angle) @ half for half in np.split(coefficients, 2)]
-    moments = JointMoments(
-        "random", angle, *curves, torque_velocity=load_torque_velocity(relation) if relation else None
-    )
+    moments = JointMoments("random", angle, *curves)
     for name in ("trt", "r1", "d1"):
         result = quasi_static(fes_mj.load_design(name), moments)
         assert result.power_weights @ coefficients == pytest.approx(result.power_mean, abs=1e-4)
-        at_once = instant_power_weights(result.motion, result.cadence, result.torque)
+        at_once = instant_power_weights(result.motion, result.cadence, result.torque.reference)
         np.testing.assert_allclose(at_once @ coefficients, result.power, atol=1e-2)
         np.testing.assert_allclose(at_once.mean(axis=0), result.power_weights, atol=1e-10)
 
@@ -60,14 +56,6 @@ def test_sd_of_power_ratio_and_difference_against_drawn_curves(group: str) -> No
     assert result.power_sd == pytest.approx(np.std(one), rel=0.12)
     assert difference_sd(result, base) == pytest.approx(np.std(np.subtract(one, other)), rel=0.12)
     assert ratio_sd(result, base) == pytest.approx(np.std(np.divide(one, other)), rel=0.12)
-
-
-@pytest.mark.long
-def test_sd_with_a_torque_velocity_relation_against_drawn_curves() -> None:
-    moments = replace(fes_mj.load_moments("p1p2"), torque_velocity=load_torque_velocity("hill"))
-    design = fes_mj.load_design("d1")
-    powers = [quasi_static(design, draw, points=360).power_mean for draw in drawn(moments, 400)]
-    assert quasi_static(design, moments).power_sd == pytest.approx(np.std(powers), rel=0.15)
 
 
 def test_a_design_does_not_differ_from_itself(moments: JointMoments) -> None:

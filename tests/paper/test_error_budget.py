@@ -14,7 +14,7 @@ from fes_mj.budget.unknowns import priors
 from fes_mj.linkage.design_file import DESIGNS
 from fes_mj.moments.joint_moments import GROUPS
 from fes_mj.moments.uncertainty import with_sd
-from fes_mj.paper.error_budget import CASES, DRAWS, FREE, FULL, GAINS, TIMES
+from fes_mj.paper.error_budget import DRAWS, GAINS, TIMES
 from fes_mj.paper.printed import SIX_BARS
 from fes_mj.statics.turn import quasi_static
 
@@ -31,12 +31,10 @@ BUDGETS, BLAME, GAIN = (
 )
 
 
-def test_every_design_group_and_case_has_its_row() -> None:
+def test_every_design_and_group_has_its_row() -> None:
     assert [(row["design"].lower(), row["group"]) for row in BUDGETS] == [*itertools.product(DESIGNS, GROUPS)]
-    assert len(BLAME) == 2 * len(BUDGETS)
-    assert [(row["design"].lower(), row["group"], row["case"]) for row in GAIN] == [
-        *itertools.product(SIX_BARS, GROUPS, CASES)
-    ]
+    assert len(BLAME) == len(BUDGETS)
+    assert [(row["design"].lower(), row["group"]) for row in GAIN] == [*itertools.product(SIX_BARS, GROUPS)]
 
 
 @pytest.mark.long
@@ -45,16 +43,13 @@ def test_rows_are_todays() -> None:
     drawn = {}
     for name in ("d1", "trt"):
         result = quasi_static(fes_mj.load_design(name), fes_mj.load_moments("p1p3"))
-        rows = together(unknowns(result), DRAWS, TIMES)
-        drawn[name] = UncertainPower(result, DRAWS).at(rows, *CASES.values())[1:]
+        drawn[name] = UncertainPower(result, DRAWS).at(together(unknowns(), DRAWS, TIMES))
         page = next(row for row in BUDGETS if (row["design"].lower(), row["group"]) == (name, "p1p3"))
-        for case, powers in zip(CASES, drawn[name], strict=True):
-            assert page[f"{case}, W"] == with_sd(*Spread.of(powers)[:2], 1)
-    for case, ratio in zip(CASES, drawn["d1"] / drawn["trt"], strict=True):
-        page = next(row for row in GAIN if (row["design"], row["group"], row["case"]) == ("D1", "p1p3", case))
-        for gain in GAINS:
-            chance = page[f"{100 * (gain - 1):.0f} % more: probability, %"]
-            assert chance == pytest.approx(100 * np.mean(ratio > gain), abs=1e-9)
+        assert page["all together, W"] == with_sd(*Spread.of(drawn[name])[:2], 1)
+    page = next(row for row in GAIN if (row["design"], row["group"]) == ("D1", "p1p3"))
+    for gain in GAINS:
+        chance = page[f"{100 * (gain - 1):.0f} % more: probability, %"]
+        assert chance == pytest.approx(100 * np.mean(drawn["d1"] / drawn["trt"] > gain), abs=1e-9)
 
 
 def test_moments_alone_are_the_stated_error() -> None:
@@ -75,8 +70,7 @@ def test_shares_are_shares() -> None:
     for row in BLAME:
         cells = [row[f"{unknown}, %"] for unknown in [*priors()][:-1]]
         pairs = [tuple(map(float, cell.split(" / "))) for cell in cells if cell is not None]
-        assert len(pairs) == len(cells) - len(CASES[row["case"]])
+        assert len(pairs) == len(cells)
         error = row["largest 95 % error, %"]
         assert sum(first for first, _ in pairs) <= 100 + 2 * error
         assert sum(total for _, total in pairs) >= 100 - 2 * error
-        assert row["case"] in (FREE, FULL)

@@ -11,12 +11,10 @@ import fes_mj
 from fes_mj.linkage import kinematics
 from fes_mj.linkage.inertia import GRAVITY
 from fes_mj.linkage.legs import TWO_LEGS
-from fes_mj.moments.drive import POINTS, drive
-from fes_mj.moments.muscle_response import place
-from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
+from fes_mj.moments.drive import POINTS
 from fes_mj.moments.torque_map import torque_map
-from fes_mj.moments.torque_velocity import load_torque_velocity
 from fes_mj.riding.leg_table import CELL_TOLERANCE, STEP_TOLERANCE, LegTable, leg_table
+from fes_mj.riding.lookup import place
 from fes_mj.riding.ride import Ride, Road, balancing_slope, steady_ripple
 from fes_mj.riding.trace import ride as solved
 from fes_mj.statics.equilibrium import crank_moment
@@ -104,8 +102,7 @@ def test_a_wheel_that_rolls_out(no_moments: fes_mj.JointMoments) -> None:
 
 
 def test_on_and_off_the_freewheel_at_half_the_step() -> None:
-    moments = replace(fes_mj.load_moments("p1p2"), torque_velocity=load_torque_velocity("hill"))
-    ride = Ride(fes_mj.load_design("d2"), moments, duration=6.0)
+    ride = Ride(fes_mj.load_design("d2"), fes_mj.load_moments("p1p2"), duration=6.0)
     trace = solved(ride)
     assert 0.3 < trace.coasting_share < 0.95
     finer = solved(ride, 2)
@@ -155,18 +152,6 @@ def test_muscles_and_road_balance(smooth_moments: fes_mj.JointMoments) -> None:
     assert trace.road_power is not None
     assert gained is not None
     assert trace.muscle_power == pytest.approx(trace.road_power + gained, rel=1e-3)
-
-
-@pytest.mark.parametrize("lag", [0.05, 0.1])
-def test_the_lagging_answer_is_the_map_where_it_was_measured(lag: float, smooth_moments: fes_mj.JointMoments) -> None:
-    """First-order filter of the command, harmonic by harmonic."""
-    commanded = drive(PAPER_TRICYCLE.design, smooth_moments, lag)
-    torque, angle = torque_map(smooth_moments), commanded.motion.joint_angle
-    rate, harmonic = commanded.motion.joint_rate, np.fft.fftfreq(POINTS, 1 / POINTS)
-    for joint, command in commanded.command.items():
-        filtered = np.fft.ifft(np.fft.fft(command) / (1 + 1j * harmonic * PAPER_TRICYCLE.cadence * lag)).real
-        exact = torque.moment(joint, angle[joint], rate[joint])
-        assert np.abs(filtered - exact).max() < 2e-3 * np.abs(exact).max()
 
 
 def test_a_turn_less_a_rounding_error_is_in_the_last_cell() -> None:

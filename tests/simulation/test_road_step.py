@@ -9,7 +9,6 @@ import pytest
 
 import fes_mj
 from fes_mj.common.checks import definitions
-from fes_mj.moments.torque_velocity import load_torque_velocity
 from fes_mj.riding.differences import work_scale
 from fes_mj.riding.ride import Ride, Road
 from fes_mj.riding.trace import ride as solved
@@ -19,7 +18,7 @@ from fes_mj.simulation.road_step import FINER, predicted_losses, ride_timestep, 
 from fes_mj.simulation.time_step import SHARE
 
 P1P2 = fes_mj.load_moments("p1p2")
-DOWNHILL = Ride(fes_mj.load_design("d1"), P1P2.at_speed(load_torque_velocity("hill")), Road(slope=-0.05), duration=8.0)
+DOWNHILL = Ride(fes_mj.load_design("d1"), P1P2, Road(slope=-0.05), duration=8.0)
 
 
 def test_the_prediction_is_what_mujoco_leaves() -> None:

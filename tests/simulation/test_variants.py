@@ -72,7 +72,7 @@ def test_only_bodies_anchors_at_bodies() -> None:
 
 @pytest.mark.parametrize("group", ["p1p2", "p1p3"])
 def test_the_range_of_a_motor_holds_every_moment_of_the_map(group: str) -> None:
-    """Also those of muscles that lengthen under Hill's relation, and not ten times as much."""
+    """With room to spare, and not ten times as much."""
     design, moments = fes_mj.load_design("d1"), fes_mj.load_moments(group)
     built = variant_model(design, moments, design.linkage.cadence, {}).compile()
     for joint in JOINTS:
@@ -125,7 +125,7 @@ def test_the_brake_lets_the_muscles_keep_the_cadence(name: str) -> None:
     built, cadence, commands = (
         model("brake", "two-legs", name=name),
         design.linkage.cadence,
-        drive(design, moments).command,
+        drive(design, moments).moment,
     )
     data = mujoco.MjData(built)
     mujoco.mj_resetDataKeyframe(built, data, 0)
