@@ -81,7 +81,6 @@ class Setting:
     def lost(self, degrees: float) -> FloatArray:
         """Expected power of each group that windows later by so much lose, one leg, W, shape (groups,)."""
         later = activation(self.windows.shifted(degrees), self.riders, self.cadence)
-        later = later * (self.windows.width > 0)[..., None]
         return np.asarray((self.power - MuscleTurn(self.turn.pulled, later).group_power[..., 0]).mean(axis=1))
 
     @cached_property

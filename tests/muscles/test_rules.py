@@ -1,9 +1,12 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from fes_mj.common.errors import InputError
 from fes_mj.linkage.design_file import load_design
 from fes_mj.linkage.turning import turning
+from fes_mj.moments.files import load_moments
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.muscles.rules import RULES, stimulated, trial_windows
 
@@ -43,3 +46,14 @@ def test_joints_beyond_the_known_lengths_are_refused(riders):
     upright = D1.with_linkage(seat_angle=np.radians(90.0))
     with pytest.raises(InputError, match=r"d1: the hip bends"):
         stimulated("best", riders, upright, 8.0)
+
+
+def test_rules_of_the_measurement_know_a_trials_own_tricycle(riders):
+    trial = load_moments("examples/trial/trial.toml").measured_on
+    own = replace(riders, measured_on=trial)
+    powers = {rule: stimulated(rule, own, trial.design, trial.cadence).power.mean(axis=1) for rule in RULES[1:]}
+    scale = np.abs(powers["measured"]).max()
+    for rule in ("by-angle", "stimulation-by-angle"):
+        assert powers[rule] == pytest.approx(powers["measured"], abs=2e-3 * scale)
+    elsewhere = stimulated("by-angle", riders, trial.design, trial.cadence).power.mean(axis=1)
+    assert np.abs(elsewhere - powers["measured"]).max() > 0.05 * scale
