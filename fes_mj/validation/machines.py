@@ -1,5 +1,6 @@
 """Predictions, as in cranking.py, that ask about joints' shares of the work and about another machine."""
 
+import itertools
 import math
 
 import numpy as np
@@ -115,9 +116,9 @@ def stepping_per_cycling(riders: Riders, setup: Setup) -> FloatArray:
         rates = [rpm * RPM for rpm in setup["cadence_rpm"]]
         return np.asarray(np.mean([best_turn(riders, design, rate)[0].power_mean[:, 0] for rate in rates], axis=0))
 
-    sizes = [(crank, flat) for crank in setup["crank_m"] for flat in setup["flatness"]]
-    steppers = [stepper(crank, flat, setup["knee_deg"]) for crank, flat in sizes]
-    return np.concatenate([power(design) for design in steppers]) / np.tile(power(TRICYCLE), len(sizes))
+    sizes = [*itertools.product(setup["crank_m"], setup["flatness"], setup["knee_deg"])]
+    stepping = np.concatenate([power(stepper(*size)) for size in sizes])
+    return stepping / np.tile(power(TRICYCLE), len(sizes))
 
 
 def effort_saved(riders: Riders, setup: Setup) -> FloatArray:
