@@ -18,7 +18,6 @@ from fes_mj.linkage.kinematics import positions
 from fes_mj.linkage.legs import ONE_LEG
 from fes_mj.moments.files import load_moments
 from fes_mj.moments.torque_map import torque_map
-from fes_mj.simulation.bench import joint_drives
 from fes_mj.simulation.mjcf import build_mjcf
 from fes_mj.simulation.stepping import feedback_loop, run_loop
 from fes_mj.simulation.time_step import steps_per_turn
@@ -114,7 +113,7 @@ def simulation(name: str) -> dict[str, np.ndarray]:
     """Steps per second of simulate's loop, with feedback and all records, and of a bare mj_step loop on its model."""
     design, torque = load_design(name), torque_map(load_moments("p1p2"))
     model, steps = build_mjcf(design).compile(), 2 * steps_per_turn(design, design.linkage.cadence)
-    loop = feedback_loop(torque, joint_drives(ONE_LEG))
+    loop = feedback_loop(torque, ONE_LEG)
 
     def bare() -> None:
         data = mujoco.MjData(model)

@@ -36,7 +36,7 @@ from fes_mj.optimization.limits import load_limits
 from fes_mj.optimization.people import sampled
 from fes_mj.optimization.problem import Problem, make_problem
 from fes_mj.optimization.search import BudgetSpentError, Search, differential
-from fes_mj.simulation.bench import BenchOptions, joint_drives, simulate
+from fes_mj.simulation.bench import BenchOptions, simulate
 from fes_mj.simulation.compiled import compiled_loop
 from fes_mj.simulation.mjcf import ModelOptions, build_mjcf
 from fes_mj.simulation.time_step import steps_per_turn
@@ -178,7 +178,7 @@ def simulated() -> dict[str, np.ndarray]:
     riders = new_riders()
     steps = steps_per_turn(riders[0], riders[0].linkage.cadence)
     models = [build_mjcf(design, options=UNDRAWN).compile() for design in riders]
-    loop = compiled_loop(torque_map(MOMENTS), joint_drives(ONE_LEG))
+    loop = compiled_loop(torque_map(MOMENTS), ONE_LEG)
     full = mujoco.mjtState.mjSTATE_FULLPHYSICS
     states = np.empty((TURNS, mujoco.mj_stateSize(models[0], full)))
     control = np.zeros((TURNS, steps, models[0].nu))

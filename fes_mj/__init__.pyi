@@ -15,6 +15,7 @@ from fes_mj.linkage.design import Design as Design, Linkage as Linkage, Rider as
 from fes_mj.linkage.design_file import load_design as load_design
 from fes_mj.moments.files import load_moments as load_moments
 from fes_mj.moments.joint_moments import JointMoments as JointMoments
+from fes_mj.muscles.drive import Muscles as Muscles, load_muscles as load_muscles
 from fes_mj.optimization.optimize import optimize as optimize
 from fes_mj.riding.ride import Ride as Ride, Road as Road
 from fes_mj.riding.starts import starts as starts

@@ -8,7 +8,6 @@ Every design of the paper with the moments of group p1p2, one setting changed at
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 from unittest.mock import patch
@@ -28,12 +27,13 @@ from fes_mj.linkage.design import BODIES, Design
 from fes_mj.linkage.design_file import DESIGNS
 from fes_mj.linkage.inertia import inertias
 from fes_mj.linkage.kinematics import Motion
+from fes_mj.linkage.legs import Leg
+from fes_mj.linkage.torque_source import TorqueSource
 from fes_mj.moments.joint_moments import JointMoments
-from fes_mj.moments.torque_map import TorqueMap
 from fes_mj.simulation import mjcf, stepping
 from fes_mj.simulation.bench import BenchOptions, Simulation
 from fes_mj.simulation.mjcf import Physics
-from fes_mj.simulation.stepping import FORCE_EVERY, Loop, drive_addresses
+from fes_mj.simulation.stepping import FORCE_EVERY, Loop, actuation
 from fes_mj.simulation.time_step import predicted_errors
 from fes_mj.statics.turn import quasi_static
 
@@ -83,17 +83,15 @@ class _DefaultLoops(Pipeline):
             loop.solref, loop.solimp = [0.02, 1.0], [0.9, 0.95, 0.001, 0.5, 2.0]
 
 
-def plain_loop(torque: TorqueMap, drives: dict[str, str]) -> Loop:
+def plain_loop(torque: TorqueSource, legs: tuple[Leg, ...]) -> Loop:
     """mj_step as other tools take it: moments and centrifugal forces by the speeds of half a step before."""
 
     def loop(model: mujoco.MjModel, data: mujoco.MjData, count: int) -> tuple[FloatArray, dict[str, FloatArray]]:
-        motors: list[tuple[tuple[int, int, int], Callable[[float, float], float]]] = [
-            (drive_addresses(model, name), torque.of(name).feedback(joint)) for name, joint in drives.items()
-        ]
+        controls = {leg: torque.control(leg, model.opt.timestep) for leg in legs}
+        act = actuation(controls, model, data, memoryview(data.qvel))
         sensors, forces = np.empty((count + 1, model.nsensordata)), []
         for row in range(count):
-            for (actuator, position, speed), moment in motors:
-                data.ctrl[actuator] = moment(float(data.qpos[position]), float(data.qvel[speed]))
+            act()
             mujoco.mj_step(model, data)
             sensors[row] = data.sensordata
             if not row % FORCE_EVERY:

@@ -2,16 +2,28 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from cyclopts import Group, Parameter
 
 from fes_mj.cli.options import LoadOptions, MomentsOptions, needs, speed_at
 from fes_mj.common.errors import InputError
+from fes_mj.linkage.design import Design
 from fes_mj.linkage.design_file import load_design
+from fes_mj.muscles.drive import Muscles
 from fes_mj.muscles.riders import Riders, load_riders
 from fes_mj.muscles.timing import DUTY
+from fes_mj.statics.drive import Drive
 from fes_mj.statics.muscle_static import MuscleStatic
+
+
+class Driven(NamedTuple):
+    """What the options of a run name: a design, what drives it, the cadence in rad/s."""
+
+    design: Design
+    drive: Drive
+    cadence: float
+
 
 _MUSCLES = Group("Muscles", validator=needs("--drive"))
 
@@ -44,11 +56,22 @@ class DriveOptions:
             )
         return load_riders(self.muscles or options.group or "p1p2")
 
+    def load_muscles(self, options: LoadOptions) -> Muscles:
+        """Whose muscles, and when they are stimulated. Raises InputError as load_riders."""
+        return Muscles(self.load_riders(options), self.timing, self.duty)
+
+    def load(self, options: LoadOptions, name: str) -> Driven:
+        """Everything the options name. Raises InputError for what cannot be used."""
+        if self.drive == "moments":
+            return Driven(*options.load(name))
+        design = load_design(name, options.dims)
+        return Driven(design, self.load_muscles(options), speed_at(options.cadence, design))
+
     def solve(self, options: LoadOptions, name: str) -> MuscleStatic:
-        """A design driven by muscles. Raises InputError for options that do not go together."""
-        design, riders = load_design(name, options.dims), self.load_riders(options)
+        """A design driven by muscles. Raises InputError as load_muscles."""
+        design, muscles = load_design(name, options.dims), self.load_muscles(options)
         speed = speed_at(options.cadence, design)
-        return MuscleStatic.solve(design, riders, speed, self.timing, self.duty, options.legs)
+        return MuscleStatic.solve(design, muscles.riders, speed, muscles.timing, muscles.duty, options.legs)
 
 
 @Parameter(name="*", group=Group("Muscles"))

@@ -14,14 +14,16 @@ import fes_mj
 from fes_mj.budget.budget import error_budget, summary
 from fes_mj.cli import tables
 from fes_mj.cli.cases import checked_case
+from fes_mj.cli.drive import DriveOptions
 from fes_mj.cli.options import BearingOptions, DesignName, Flag, Out, RunOptions, needs
 from fes_mj.common.checks import Check
-from fes_mj.common.console import print_table
+from fes_mj.common.console import print_table, say
 from fes_mj.common.errors import InputError
 from fes_mj.common.units import RPM
 from fes_mj.common.writing import json_text, require_results, require_writable, write_results
 from fes_mj.linkage.design_file import design_path, design_toml
 from fes_mj.simulation.time_step import LONGEST_TIMESTEP
+from fes_mj.statics.muscle_static import MuscleStatic
 
 _VIDEO = Group("Video", validator=needs("--render"))
 TURN_SHOWN = (0.1, 60.0)  # s, shortest and longest of a turn in a video
@@ -32,6 +34,7 @@ def simulate(
     /,
     *,
     options: RunOptions = RunOptions(),
+    drive: DriveOptions = DriveOptions(),
     bearings: BearingOptions = BearingOptions(),
     out: Out | None = None,
     timestep: Annotated[float | None, Parameter(validator=Number(gt=0, lte=LONGEST_TIMESTEP))] = None,
@@ -51,16 +54,16 @@ def simulate(
         speed: Of the video: 1 is the true one. By default a turn takes 4 s.
         view: Then watch it run in MuJoCo's interactive viewer, with two legs, where there is a screen.
     """
-    loaded, inputs = options.load(design), options.inputs(design)
+    loaded, inputs = drive.load(options, design), options.inputs(design)
     require_writable(render, "the video", ".mp4", inputs)
     if speed is not None:
         _check_speed(speed, loaded.cadence)
     from fes_mj.common.provenance import provenance
     from fes_mj.verification.suite import quick_groups, verify
 
-    one_leg = checked_case(design, options, timestep=timestep, turns=turns, bearings=bearings.load())
+    one_leg = checked_case(design, options, drive, timestep=timestep, turns=turns, bearings=bearings.load())
     case = one_leg if options.legs == 1 else one_leg.two_legs
-    stem = f"{case.design.name}-{case.moments.name}"
+    stem = f"{case.design.name} {case.drive.name}".replace(" ", "-")
     paths = require_results(out, stem, ("json", "csv", "xml"), inputs) if out else {}
     # bearings lose energy, which every other check takes for an error
     checks = case.checks if case.bearings else [*verify(one_leg, quick_groups(options.legs))]
@@ -89,7 +92,7 @@ def _content(case: fes_mj.Case, checks: Sequence[Check], source: dict[str, Any])
     """The result as JSON names and units it, and what it was made from."""
     return (
         case.summary()
-        | summary(error_budget(*case.statics.turns))
+        | ({} if isinstance(case.statics, MuscleStatic) else summary(error_budget(*case.statics.turns)))
         | {"agrees": all(check.ok for check in checks), "checks": [check.as_json() for check in checks]}
         | {"design_toml": design_toml(case.design), "provenance": source}
     )
@@ -116,7 +119,11 @@ def _print(case: fes_mj.Case, checks: Sequence[Check], verbose: bool) -> None:
     rows = zip(tables.beside(*map(tables.power_rows, case.statics.turns)), dynamic, strict=True)
     heads = ("", *(f"quasi-static{side}" for side in sides), "dynamic")
     print_table(tables.heading(case.static, len(run.legs)), heads, [(*row, measured) for row, measured in rows])
-    tables.print_budget(*case.statics.turns)
+    if isinstance(case.statics, MuscleStatic):
+        say("of the most probable rider; +- is over the riders who may have been measured")
+        tables.print_stimulation(case.statics)
+    else:
+        tables.print_budget(*case.statics.turns)
     turn = tables.beside(*map(tables.turn_rows, (case.static.summary(), case.static.summary() | case.characteristics)))
     together = "dynamic" if len(run.legs) == 1 else "dynamic, both legs"
     print_table("The turn", ("", f"quasi-static{sides[0]}", together), turn)
@@ -130,7 +137,7 @@ def _print(case: fes_mj.Case, checks: Sequence[Check], verbose: bool) -> None:
         print_table("Energy over the measured turns", ("term", "J"), terms)
         print_table("Constraint forces", ("loop", "mean N", "largest N"), tables.force_rows(run.loop_force))
     for quasi_static in case.statics.turns:
-        tables.print_notes(quasi_static, f"{quasi_static.moments.name}: " if len(case.statics.turns) > 1 else "")
+        tables.print_notes(quasi_static, f"{quasi_static.driver}: " if len(case.statics.turns) > 1 else "")
     tables.conclude_checks("Dynamic and static", checks, f": mean power differs by {case.difference_text}")
 
 

@@ -1,5 +1,6 @@
 """`fes_mj static`: the quasi-static solver alone, of one design or of several side by side."""
 
+from collections.abc import Sequence
 from typing import Any, Protocol
 
 import numpy as np
@@ -21,6 +22,8 @@ class Result(Protocol):
 
     @property
     def first(self) -> DrivenTurn: ...
+    @property
+    def turns(self) -> Sequence[DrivenTurn]: ...
     @property
     def legs(self) -> int: ...
     @property
@@ -87,13 +90,13 @@ def _comparison(results: list[Result], curves: bool, bearings: Bearings | None) 
 
 
 def _print(result: Result, curves: bool, bearings: Bearings | None, verbose: bool) -> None:
-    first, turns = result.first, result.turns if isinstance(result, LegTurns) else (result.first,)
+    first, turns = result.first, result.turns
     sides = ("quasi-static",) if len(turns) == 1 else ("right", "left")
     rows = tables.beside(*map(tables.power_rows, turns))
     print_table(tables.heading(first, result.legs), ("", *sides), rows)
     if isinstance(result, MuscleStatic):
         say("+- is over the riders who may have been measured")
-        _print_stimulation(result)
+        tables.print_stimulation(result)
     elif verbose and isinstance(result, LegTurns):
         tables.print_budget(*result.turns)
     elif result.power_sd is not None:
@@ -108,16 +111,6 @@ def _print(result: Result, curves: bool, bearings: Bearings | None, verbose: boo
         _print_curves(_curves(result, 36))
     for turn in turns:
         tables.print_notes(turn, f"{turn.driver}: " if len(turns) > 1 else "")
-
-
-def _print_stimulation(result: MuscleStatic) -> None:
-    """When each group is stimulated, where the rule has windows."""
-    windows = result.windows_deg or {}
-    rows = [
-        (group, *(["-", "-"] if ends is None else [f"{end:.0f}" for end in ends])) for group, ends in windows.items()
-    ]
-    if rows:
-        print_table(f"Stimulation, deg of crank; 0: {CRANK_ZERO}", ("muscles", "on", "off"), rows)
 
 
 def _print_comparison(results: list[Result], bearings: Bearings | None) -> None:

@@ -11,8 +11,10 @@ from fes_mj.common.checks import Check
 from fes_mj.common.console import conclude, number, print_table, say, verdict
 from fes_mj.common.units import RPM
 from fes_mj.linkage.design import Design
+from fes_mj.linkage.turning import CRANK_ZERO
 from fes_mj.statics.friction import BearingLoss
 from fes_mj.statics.joint_forces import NET_FORCE, JointForces, KneeLoad, peaks
+from fes_mj.statics.muscle_static import MuscleStatic
 from fes_mj.statics.turn import DrivenTurn, QuasiStatic
 
 
@@ -46,6 +48,16 @@ def turn_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
         ("smallest transmission angle, deg", f"{summary['transmission_angle_min_deg']:.1f}"),
         ("length x height, cm", f"{100 * summary['length_m']:.0f} x {100 * summary['height_m']:.0f}"),
     ]
+
+
+def print_stimulation(result: MuscleStatic) -> None:
+    """Print when each group is stimulated, where the rule has windows."""
+    windows = result.windows_deg or {}
+    rows = [
+        (group, *(["-", "-"] if ends is None else [f"{end:.0f}" for end in ends])) for group, ends in windows.items()
+    ]
+    if rows:
+        print_table(f"Stimulation, deg of crank; 0: {CRANK_ZERO}", ("muscles", "on", "off"), rows)
 
 
 def print_forces(joint_forces: JointForces) -> None:

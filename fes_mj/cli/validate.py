@@ -11,6 +11,7 @@ from cyclopts import Group, Parameter
 
 from fes_mj.cli.against import against as report_against
 from fes_mj.cli.cases import checked_case
+from fes_mj.cli.drive import DriveOptions
 from fes_mj.cli.options import DesignName, Flag, RunOptions, needs
 from fes_mj.cli.tables import print_checks, print_notes
 from fes_mj.common.checks import Check, definitions, find
@@ -33,6 +34,7 @@ FAULTY_DESIGN = "d1"
 def validate(
     *designs: DesignName,
     options: RunOptions = RunOptions(),
+    drive: DriveOptions = DriveOptions(),
     quick: Flag = False,
     faults: Flag = False,
     report: Annotated[Path | None, Parameter(group=_REPORT)] = None,
@@ -59,10 +61,10 @@ def validate(
     if against is not None:
         others = {"DESIGN": designs, "--report": report, "--junit": junit, "--faults": faults, "--quick": quick}
         return report_against(against, options, others)
-    cases = list(_cases(designs or DESIGNS, options, quick))
+    cases = list(_cases(designs or DESIGNS, options, drive, quick))
     _check_files(report, junit, video, options.inputs(*designs))
     checks = _run_checks(cases, quick, options)
-    detections = _inject(designs[0] if designs else FAULTY_DESIGN, options) if faults else ()
+    detections = _inject(designs[0] if designs else FAULTY_DESIGN, options, drive) if faults else ()
     broken = {check.subject for check in checks if check.name == "stability" and not check.ok}
     measured = [case for case in cases if case.name not in broken]
     ok = all(check.ok for check in checks) and all(detection.caught for detection in detections)
@@ -102,13 +104,13 @@ def _explain(name: str) -> int:
     return 0
 
 
-def _cases(designs: Sequence[str], options: RunOptions, quick: bool) -> Iterator[VerificationCase]:
-    """Every design with the moments asked for; both groups in a full run that names none."""
+def _cases(designs: Sequence[str], options: RunOptions, drive: DriveOptions, quick: bool) -> Iterator[VerificationCase]:
+    """Every design with the moments or muscles asked for; of both groups in a full run that names none."""
     both = [replace(options, group="p1p2"), replace(options, group="p1p3")]
-    chosen = [options] if quick or options.group or options.moments else both
+    chosen = [options] if quick or options.group or options.moments or drive.muscles else both
     for design in dict.fromkeys(designs):
         for choice in chosen:
-            yield checked_case(design, choice, refined=not quick)
+            yield checked_case(design, choice, drive, refined=not quick)
 
 
 def _check_files(report: Path | None, junit: Path | None, video: Path | None, inputs: list[Path]) -> None:
@@ -130,11 +132,11 @@ def _run_checks(cases: list[VerificationCase], quick: bool, options: RunOptions)
     return [check for run in track(runs, "checking", options.silent) for check in run]
 
 
-def _inject(design: str, options: RunOptions) -> tuple[Detection, ...]:
+def _inject(design: str, options: RunOptions, drive: DriveOptions) -> tuple[Detection, ...]:
     from fes_mj.verification.faults import inject, passing
     from fes_mj.verification.mistakes import faults
 
-    case = next(_cases((design,), options, quick=True))
+    case = next(_cases((design,), options, drive, quick=True))
     baseline = passing(case)
     possible = [fault for fault in faults() if fault.applies(case)]
     return tuple(inject(fault, case, baseline) for fault in track(possible, "injecting faults", options.silent))

@@ -50,13 +50,14 @@ def _njit(function: Function, **options: bool) -> Function:
 
 
 def readable(value: Value) -> Value:
-    """A named tuple of arrays as these functions read it: lists in their place for Python, ten times faster."""
-    return value if COMPILED else _in_lists(value)
+    """A named tuple of arrays as these functions read it: `in_lists` where Python runs them."""
+    return value if COMPILED else in_lists(value)
 
 
-def _in_lists(value: Value) -> Value:
+def in_lists(value: Value) -> Value:
+    """A named tuple of arrays with lists in their place, which Python reads ten times faster."""
     if isinstance(value, np.ndarray):
         return cast("Value", value.tolist())
     if isinstance(value, tuple) and hasattr(value, "_fields"):
-        return cast("Value", type(value)(*map(_in_lists, value)))
+        return cast("Value", type(value)(*map(in_lists, value)))
     return value

@@ -1,8 +1,9 @@
-"""The steps from a design under joint moments to a measured turn, each of which a fault can replace."""
+"""The steps from a design and what drives it to a measured turn, each of which a fault can replace."""
 
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import cast
 
 import numpy as np
 
@@ -13,29 +14,32 @@ from fes_mj.linkage.inertia import GRAVITY, BodyLoad, body_loads
 from fes_mj.linkage.joints import PerJoint
 from fes_mj.linkage.kinematics import Motion
 from fes_mj.linkage.legs import LEGS
+from fes_mj.linkage.torque_source import TorqueSource
 from fes_mj.linkage.variables import crank_speed
-from fes_mj.moments.joint_moments import JointMoments
-from fes_mj.moments.torque_map import TorqueMap, torque_map
+from fes_mj.moments.torque_map import TorqueMap
+from fes_mj.muscles.drive import Muscles
 from fes_mj.simulation.appearance import Spec
 from fes_mj.simulation.bearings import add_friction
 from fes_mj.simulation.bench import PLAIN, BenchOptions, Simulation, simulate
 from fes_mj.simulation.mjcf import REAL, ModelOptions, Physics, build_mjcf
+from fes_mj.statics.drive import Drive, driven_speed, torque_source
 from fes_mj.statics.equilibrium import equilibrium, virtual_work
 from fes_mj.statics.friction import BearingLoss, Bearings
 from fes_mj.statics.joint_forces import JointForces
+from fes_mj.statics.muscle_static import MuscleStatic
 from fes_mj.statics.turn import QuasiStatic, turn_points
-from fes_mj.statics.validity import turning_in_range
 
 
 @dataclass(frozen=True, eq=False)
 class Setup:
-    """A design under joint moments at a cadence (rad/s, by default Eq. 16), for whole turns of one leg or two.
+    """A design and what drives it at a cadence (rad/s, by default Eq. 16), for whole turns of one leg or two.
 
-    timestep: s, by default chosen by time_step. bearings: with friction, if they are given.
+    drive: JointMoments, or Muscles, of which it is the most probable rider. timestep: s, by default chosen by
+    time_step. bearings: with friction, if they are given.
     """
 
     design: Design
-    moments: JointMoments
+    drive: Drive
     cadence: float = math.nan
     timestep: float | None = None
     turns: int = 1
@@ -51,8 +55,8 @@ class Pipeline(Setup):
     """The steps of a setup. A subclass that replaces one of them is a pipeline with a fault."""
 
     @cached_property
-    def torque(self) -> TorqueMap:
-        return torque_map(self.moments)
+    def torque(self) -> TorqueSource:
+        return torque_source(self.drive, self.design, self.cadence)
 
     def motion(self, crank_angle: FloatArray) -> Motion:
         """Kinematics at crank angles, rad."""
@@ -83,7 +87,7 @@ class Pipeline(Setup):
         """Simulate; timestep (s) and turns instead of the setup's own. Raises UnstableError if it breaks down."""
         return simulate(
             self.design,
-            self.moments,
+            self.drive,
             cadence=self.cadence,
             timestep=self.timestep if timestep is None else timestep,
             turns=self.turns if turns is None else turns,
@@ -100,16 +104,20 @@ class Pipeline(Setup):
         self.edit_model(spec)
         return spec
 
-    def quasi_static(self, leg: str = "", points: int | None = None) -> QuasiStatic:
+    def quasi_static(self, leg: str = "", points: int | None = None) -> QuasiStatic | MuscleStatic:
         """The quasi-static turn of the leg with this name prefix, over so many crank angles (default turn_points).
 
         Raises AssemblyError if the linkage does not close.
         """
-        torque = self.torque.of(leg)
-        turning_in_range(self.design, torque.reference)
+        driven_speed(self.design, self.drive, self.cadence, self.legs)
         motion = self.motion(np.linspace(0, 2 * np.pi, points or turn_points(self.design), endpoint=False))
-        joint_moment = self.joint_moment(motion, leg)
-        return QuasiStatic(motion, self.cadence, joint_moment, *self.equilibrium(motion, joint_moment), torque)
+        joint_moment, torque = self.joint_moment(motion, leg), self.torque.of(leg)
+        crank_moment, reactions = self.equilibrium(motion, joint_moment)
+        turn = (motion, self.cadence, joint_moment, crank_moment, reactions)
+        if isinstance(self.drive, Muscles):
+            every = self.drive.stimulated(self.design, self.cadence)
+            return MuscleStatic(*turn, self.drive.timing, every, self.legs, every.most_probable)
+        return QuasiStatic(*turn, cast("TorqueMap", torque))
 
     @cached_property
     def friction(self) -> BearingLoss | None:

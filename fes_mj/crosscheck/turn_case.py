@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field, fields
 from functools import cached_property
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -14,10 +14,12 @@ from fes_mj.common.units import RPM
 from fes_mj.common.writing import csv_text
 from fes_mj.crosscheck.pipeline import Pipeline, Setup
 from fes_mj.linkage.turning import FROM_TOP, turning
+from fes_mj.muscles.torque import MuscleTorque
 from fes_mj.simulation.bench import BenchOptions, Simulation
 from fes_mj.simulation.mjcf import Physics
 from fes_mj.statics.characteristics import power_characteristics
 from fes_mj.statics.joint_forces import JointForces
+from fes_mj.statics.muscle_static import MuscleStatic
 from fes_mj.statics.turn import LegTurns, QuasiStatic
 
 # The near-massless variant keeps so much of all masses that inertia adds this power to the quasi-static curve. With
@@ -47,8 +49,8 @@ class Case(Brief, Setup):
 
     @property
     def name(self) -> str:
-        """Design and moments."""
-        return self.label or f"{self.design.name} {self.moments.name}"
+        """Design, and what drives it."""
+        return self.label or f"{self.design.name} {self.drive.name}"
 
     @cached_property
     def steps(self) -> Pipeline:
@@ -56,7 +58,7 @@ class Case(Brief, Setup):
         return self.pipeline(*(getattr(self, field.name) for field in fields(Setup)))
 
     @cached_property
-    def static(self) -> QuasiStatic:
+    def static(self) -> QuasiStatic | MuscleStatic:
         """The quasi-static turn. Raises AssemblyError if the linkage does not close."""
         return self.steps.quasi_static()
 
@@ -66,10 +68,13 @@ class Case(Brief, Setup):
         return JointForces(self.static)
 
     @cached_property
-    def statics(self) -> LegTurns:
+    def statics(self) -> LegTurns | MuscleStatic:
         """The quasi-static turns of all legs."""
-        own = () if self.moments.left is None or self.legs == 1 else (self.steps.quasi_static("left_"),)
-        return LegTurns((self.static, *own), self.legs)
+        static = self.static
+        if isinstance(static, MuscleStatic):
+            return static
+        own = () if static.moments.left is None or self.legs == 1 else (self.steps.quasi_static("left_"),)
+        return LegTurns((static, *cast("tuple[QuasiStatic, ...]", own)), self.legs)
 
     @cached_property
     def simulation(self) -> Simulation:
@@ -147,7 +152,18 @@ class Case(Brief, Setup):
             *self.simulation.checks(self.statics.power_mean, self.friction_loss, self.name),
             self.check("inverse_dynamics", self.rms_per_leg(self.simulation)),
             self.check("massless_statics", self.rms_per_leg(self.massless, 0.0)),
+            *self._activation_checks,
         )
+
+    @property
+    def _activation_checks(self) -> list[Check]:
+        """Of muscles: activation of the run against the periodic answer, per what both may miss."""
+        torque, run = self.steps.torque, self.simulation
+        if not isinstance(torque, MuscleTorque):
+            return []
+        answers = [torque.activation(run.crank_angle - leg.lag) for leg in run.legs]
+        apart = np.abs(run.activation - np.concatenate(answers).T).max()
+        return [self.check("muscle_activation", float(apart) / torque.hidden(run.timestep))]
 
     @property
     def agrees(self) -> bool:
@@ -197,6 +213,7 @@ class Case(Brief, Setup):
                 "quasi_static_power_W": self.reference_power(mass_scale=0.0),
                 **{f"{name}_deg": np.degrees(angle) for name, angle in run.joint_angle.items()},
                 **{f"{name}_Nm": moment for name, moment in run.joint_moment.items()},
+                **{f"{name}_activation": active for name, active in run.activation_of.items()},
                 **{f"{name}_gap_m": gap for name, gap in run.loop_gap.items()},
             }
         )

@@ -14,8 +14,10 @@ import numpy as np
 from fes_mj.common.arrays import FloatArray
 from fes_mj.linkage.joints import PerJoint
 from fes_mj.linkage.kinematics import Motion
+from fes_mj.linkage.legs import Leg
+from fes_mj.linkage.torque_source import LegControl
 from fes_mj.moments.joint_moments import JointMoments
-from fes_mj.moments.reference_tricycle import INVERSES
+from fes_mj.moments.reference_tricycle import INVERSES, ReferenceTricycle
 
 TABLE_SIZE = 3600  # moments are interpolated linearly on a uniform grid of 0.1 deg
 GRID = np.arange(TABLE_SIZE + 2) * (2 * np.pi / TABLE_SIZE)  # from top dead centre; two more for rounding at the end
@@ -58,9 +60,17 @@ class TorqueMap:
         """The same map for plain floats, (angle, rate) -> moment; twenty times faster for one value at a time."""
         return partial(scalar_map(joint, _acos), self.parameters(joint), self.table[joint].tolist())
 
+    def control(self, leg: Leg, timestep: float = 0.0) -> LegControl:
+        """The moments of a leg by its state alone (TorqueSource.control)."""
+        own = self.of(leg.prefix)
+        knee_moment, hip_moment = own.feedback("knee"), own.feedback("hip")
+        return LegControl(
+            lambda _, knee, hip, knee_rate, hip_rate: (knee_moment(knee, knee_rate), hip_moment(hip, hip_rate))
+        )
+
     def parameters(self, joint: str) -> tuple[tuple[float, ...], float, float]:
         """What scalar_map must know of the tricycle of the measurement."""
-        return (self.reference.inverse_geometry[joint], *self.reference.ranges[joint])
+        return source_parameters(self.reference, joint)
 
 
 @lru_cache(maxsize=32)
@@ -69,21 +79,47 @@ def torque_map(moments: JointMoments) -> TorqueMap:
     return TorqueMap(moments)
 
 
-def scalar_map(
-    joint: str, acos: Callable[[float], float], compiled: Callable[[Any], Any] = lambda function: function
-) -> Callable[[Any, Any, float, float], float]:
-    """The map for plain floats: (TorqueMap.parameters, table, angle, rate) -> moment.
+def source_parameters(reference: ReferenceTricycle, joint: str) -> tuple[tuple[float, ...], float, float]:
+    """What scalar_source must know of the tricycle of the measurement."""
+    return (reference.inverse_geometry[joint], *reference.ranges[joint])
+
+
+def _acos(value: float) -> float:
+    try:
+        return math.acos(value)
+    except ValueError:  # a rounding error beyond an end of the range
+        return 0.0 if value > 0 else math.pi
+
+
+def scalar_source(
+    joint: str, acos: Callable[[float], float] = _acos, compiled: Callable[[Any], Any] = lambda function: function
+) -> Callable[[Any, float, float], float]:
+    """ReferenceTricycle.source_angle for plain floats: (source_parameters, angle, rate) -> rad.
 
     acos: takes a rounding error beyond -1 or 1. compiled: what turns Python functions into machine code.
     """
-    source, scale = compiled(INVERSES[joint](math, acos)), TABLE_SIZE / (2 * math.pi)
+    inverse = compiled(INVERSES[joint](math, acos))
 
-    def moment(where: Any, table: Any, angle: float, rate: float) -> float:
+    def source(where: Any, angle: float, rate: float) -> float:
         geometry, low, high = where
         if not low <= angle <= high:  # as ReferenceTricycle.around, and the nearer end
             angle -= 2 * math.pi * math.floor((angle - (low + high) / 2) / (2 * math.pi) + 0.5)
             angle = low if angle < low else high if angle > high else angle
-        position = source(geometry, angle, 1.0 if rate >= 0 else -1.0) * scale
+        there: float = inverse(geometry, angle, 1.0 if rate >= 0 else -1.0)
+        return there
+
+    result: Callable[[Any, float, float], float] = compiled(source)
+    return result
+
+
+def scalar_map(
+    joint: str, acos: Callable[[float], float], compiled: Callable[[Any], Any] = lambda function: function
+) -> Callable[[Any, Any, float, float], float]:
+    """The map for plain floats: (source_parameters, table, angle, rate) -> moment; acos, compiled: of scalar_source."""
+    source, scale = scalar_source(joint, acos, compiled), TABLE_SIZE / (2 * math.pi)
+
+    def moment(where: Any, table: Any, angle: float, rate: float) -> float:
+        position = source(where, angle, rate) * scale
         if position < 0:
             position += TABLE_SIZE
         index = int(position)
@@ -92,13 +128,6 @@ def scalar_map(
 
     result: Callable[[Any, Any, float, float], float] = compiled(moment)
     return result
-
-
-def _acos(value: float) -> float:
-    try:
-        return math.acos(value)
-    except ValueError:  # a rounding error beyond an end of the range
-        return 0.0 if value > 0 else math.pi
 
 
 def _interpolated(table: FloatArray, source: Any) -> FloatArray:

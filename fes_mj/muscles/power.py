@@ -35,6 +35,10 @@ class MuscleTurn:
         """Joint moments of the muscles, N m, positive in extension, shape (members, designs, angles)."""
         return self.pulled.moment.map(lambda moment: np.einsum("gmda,gmda->mda", self.activation, moment))
 
+    def alone(self, member: int) -> "MuscleTurn":
+        """That of one of the riders."""
+        return MuscleTurn(self.pulled.alone(member), self.activation[:, [member]])
+
     @property
     def power_mean(self) -> FloatArray:
         """W, one leg, shape (members, designs)."""

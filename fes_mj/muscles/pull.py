@@ -44,6 +44,11 @@ class Pull:
         arms = PerJoint(self.lengths.by_knee, self.lengths.by_hip)
         return arms.map(lambda arm: self.of_groups(self.force * arm))
 
+    def alone(self, member: int) -> "Pull":
+        """That of one of the riders."""
+        lengths = Values(*(values[:, [member]] for values in self.lengths))
+        return Pull(self.anatomy, self.force[:, [member]], lengths, self.speed[:, [member]], self.scale)
+
     def of_groups(self, values: FloatArray) -> FloatArray:
         """Sums over the muscles of each group, each as much longer as the rider's is."""
         longer = self.scale * values

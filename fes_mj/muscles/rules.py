@@ -28,7 +28,7 @@ from fes_mj.muscles.riders import Riders
 from fes_mj.muscles.timing import ANGLES, DUTY, Windows, responded
 
 BEST, MEASURED, BY_ANGLE, STIMULATION_BY_ANGLE = RULES = ("best", "measured", "by-angle", "stimulation-by-angle")
-_LEADING = {"quadriceps": "knee", "hamstrings": "knee", "gluteus": "hip"}
+LEADING = {"quadriceps": "knee", "hamstrings": "knee", "gluteus": "hip"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,6 +60,17 @@ class Stimulated:
         changed = anatomy().changed_arms(Flexion.along(self.motion, ends))
         return [f"the moment arm of {arm} changes its sign within the angles that are used" for arm in changed]
 
+    @property
+    def most_probable(self) -> int:
+        """Number of the rider with the largest density."""
+        return int(np.argmax(self.riders.likelihood))
+
+    def alone(self, member: int) -> "Stimulated":
+        """One of the riders, stimulated as among the others."""
+        riders, moment = self.riders.taken([member]), self.moment.map(lambda moment: moment[[member]])
+        turn = self.turn and self.turn.alone(member)
+        return Stimulated(riders, self.motion, self.cadence, moment, turn, self.windows and self.windows.of(member))
+
 
 def stimulated(rule: str, riders: Riders, design: Design, cadence: float, duty: float = DUTY) -> Stimulated:
     """Riders on a design under one of RULES.
@@ -71,10 +82,7 @@ def stimulated(rule: str, riders: Riders, design: Design, cadence: float, duty: 
     motion = kinematics.solve(design, ANGLES)
     anatomy().require_range(design.name, Flexion.along(motion, np.radians(riders["hip_offset_deg"])))
     if rule == BY_ANGLE:
-        trial = riders.measured_on
-        there = muscle_turn(riders, trial.design, trial.cadence, trial_windows(riders, trial.design))
-        measured = there.moment.map(lambda moment: moment[:, 0])
-        return Stimulated(riders, motion, cadence, moments_by_angle(measured, motion, trial))
+        return Stimulated(riders, motion, cadence, moments_by_angle(trial_moments(riders), motion, riders.measured_on))
     windows = None
     if rule == BEST:
         turn, windows = best_turn(riders, design, cadence, duty)
@@ -82,7 +90,7 @@ def stimulated(rule: str, riders: Riders, design: Design, cadence: float, duty: 
         windows = trial_windows(riders, design)
         turn = muscle_turn(riders, design, cadence, windows)
     else:
-        stimulation = _by_joint(riders, design, cadence)
+        stimulation = stimulated_by_joint(riders, design, cadence, ANGLES)
         turn = MuscleTurn(pull(riders, motion, cadence), responded(stimulation, riders, np.full((1, 1), cadence)))
     return Stimulated(riders, motion, cadence, turn.moment.map(lambda moment: moment[:, 0]), turn, windows)
 
@@ -93,11 +101,18 @@ def trial_windows(riders: Riders, design: Design) -> Windows:
     return Windows(on, width).shifted(np.degrees(turning(design).top_dead_centre))
 
 
-def _by_joint(riders: Riders, design: Design, cadence: float) -> FloatArray:
+def trial_moments(riders: Riders) -> PerJoint[FloatArray]:
+    """Joint moments of the muscles in the measurement over ANGLES of its crank, N m, shape (members, POINTS)."""
+    trial = riders.measured_on
+    there = muscle_turn(riders, trial.design, trial.cadence, trial_windows(riders, trial.design))
+    return there.moment.map(lambda moment: moment[:, 0])
+
+
+def stimulated_by_joint(riders: Riders, design: Design, cadence: float, crank_angle: FloatArray) -> FloatArray:
     """Stimulation of each group by the joint that leads it, delayed, shape (groups, members, 1, angles)."""
-    trial, motion = riders.measured_on, kinematics.solve(design, ANGLES - cadence * riders["delay_s"][:, 0])
+    trial, motion = riders.measured_on, kinematics.solve(design, crank_angle - cadence * riders["delay_s"][:, 0])
     angle, rate = motion.joint_angle, motion.joint_rate
     source = PerJoint.of(lambda joint: trial.source_angle(joint, angle[joint], rate[joint]))
     on, width = np.radians(np.moveaxis(riders.windows(), -1, 0))[..., None]
-    there = np.stack([source[_LEADING[group]] for group in GROUPS])
+    there = np.stack([source[LEADING[group]] for group in GROUPS])
     return trapezium(there - on, width, trial.cadence * ramp())[:, :, None]

@@ -38,6 +38,10 @@ class Windows:
         on, width = (np.radians(values)[..., None] for values in (self.on, self.width))
         return trapezium(crank_angle - on, width, ramp_angle)
 
+    def of(self, member: int) -> "Windows":
+        """Those of one of the members."""
+        return self if self.on.shape[1] == 1 else Windows(self.on[:, [member]], self.width[:, [member]])
+
     def shifted(self, degrees: float) -> "Windows":
         """The same later in the turn."""
         return Windows((self.on + degrees) % 360, self.width)

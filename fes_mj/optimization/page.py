@@ -1,14 +1,14 @@
 """A page on one found design: numbers, motion, power, constraints, front; HTML with everything inside."""
 
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
 from fes_mj.common.arrays import FloatArray
 from fes_mj.common.style import COLOURS, INK, MOMENTS, SERIES
 from fes_mj.linkage.design_file import design_toml
-from fes_mj.moments.joint_moments import GROUPS
+from fes_mj.moments.joint_moments import GROUPS, JointMoments
 from fes_mj.optimization.optimize import Optimum
 from fes_mj.optimization.pareto import FLUCTUATION, Front
 from fes_mj.optimization.winner import Winner
@@ -49,7 +49,7 @@ def _figures(winner: Winner) -> list[str]:
         draw_linkage(linkage, winner.design, POSE)
         curves, (power,) = page_axes()
         plot_power(power, winner.case, ("mujoco", "quasi-static"))
-        other = quasi_static(winner.compared_with, winner.case.moments)
+        other = quasi_static(winner.compared_with, cast("JointMoments", winner.case.drive))
         label = f"{winner.compared_with.name}, quasi-static"
         curve = over_turn(other.crank_angle, other.power)
         power.plot(*curve, "--", color=COLOURS["comparison"], lw=1, label=label)

@@ -104,7 +104,7 @@ class Winner:
     @property
     def driver(self) -> str:
         """What moves the legs, in a few words."""
-        return self.case.moments.name
+        return self.case.drive.name
 
     @property
     def agrees(self) -> bool:
@@ -166,7 +166,7 @@ class Winner:
         problem, case, static = optimum.problem, self.case, self.case.static.summary()
         content: dict[str, Any] = {
             "kind": self.design.linkage.kind,
-            "group": case.moments.name,
+            "group": case.drive.name,
             "method": optimum.method,
             **{key: static[key] for key in ("power_mean_W", "work_per_turn_J", "cadence_rpm")},
             "feasible": optimum.feasible,

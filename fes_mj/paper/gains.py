@@ -52,7 +52,9 @@ def smoothness_table(runs: Runs) -> Rows:
         masses = case.reference_power() - muscle
         energy = [energy_swing(power, run.cadence) for power in (muscle, run.power)]
         work = 2 * np.pi * muscle.mean() / run.cadence
-        ride = Ride(run.design, run.moments, Road(tricycle_mass=TRICYCLE_MASS, rolling_mass=0.0), "fixed")
+        ride = Ride(
+            run.design, runs.static[name, group].moments, Road(tricycle_mass=TRICYCLE_MASS, rolling_mass=0.0), "fixed"
+        )
         ripple = 100 * steady_ripple(ride) if legs == len(TWO_LEGS) else None
         swings = [float(np.ptp(power)) for power in (muscle, masses, run.power)]
         yield name.upper(), group, str(legs), *swings, *(value / work for value in energy), ripple

@@ -14,14 +14,14 @@ from fes_mj.common.units import RPM
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.joints import JOINTS, PerJoint
 from fes_mj.linkage.legs import LEGS, Leg
-from fes_mj.moments.joint_moments import JointMoments
-from fes_mj.moments.torque_map import TorqueMap, torque_map
+from fes_mj.linkage.torque_source import TorqueSource
+from fes_mj.muscles.anatomy import GROUPS
 from fes_mj.simulation.appearance import Spec
 from fes_mj.simulation.bearings import friction_on_crank
 from fes_mj.simulation.mjcf import REAL, ModelOptions, Physics, build_mjcf
 from fes_mj.simulation.stepping import PRE_ROLL, LoopMaker, Run, Sensors, feedback_loop, run_loop
 from fes_mj.simulation.time_step import steps_per_turn
-from fes_mj.statics.validity import valid_speed
+from fes_mj.statics.drive import Drive, driven_speed, torque_source
 
 
 @dataclass(frozen=True)
@@ -47,6 +47,8 @@ class Energy:
 class Simulation(Brief):
     """Whole measured turns; arrays have shape (steps,), sampled at the start of each step.
 
+    drive: what moved the legs, and torque, the joint moments that it gave. activation: of the muscle groups (anatomy
+    .GROUPS) of all legs, one after the other, shape (steps, groups of all legs); none of them with joint moments.
     Dictionaries are by joint name ("hip", "knee", "crank", "rocker", "coupler"; with two legs "right_hip" ...; moments
     only of hips and knees), the loop ones by the name of the cut joint ("pedal", "crank_pin"). A loop's force is
     complex, in the linkage's plane, that of the first body named by Architecture.joints on the second, as
@@ -54,7 +56,8 @@ class Simulation(Brief):
     """
 
     design: Design
-    torque: TorqueMap
+    drive: Drive
+    torque: TorqueSource
     cadence: float  # rad/s, commanded
     timestep: float  # s
     turns: int
@@ -67,6 +70,7 @@ class Simulation(Brief):
     joint_angle: dict[str, FloatArray]  # rad
     joint_speed: dict[str, FloatArray]  # rad/s
     joint_moment: dict[str, FloatArray]  # N m
+    activation: FloatArray
     loop_gap: dict[str, FloatArray]  # m
     loop_force: dict[str, ComplexArray]  # N
     energy: Energy
@@ -74,11 +78,13 @@ class Simulation(Brief):
     @property
     def brief(self) -> str:
         rpm, steps = self.cadence / RPM, len(self.crank_angle)
-        return f"{self.design.name} {self.moments.name}: {self.power_mean:.2f} W at {rpm:.1f} rpm, {steps} steps"
+        return f"{self.design.name} {self.drive.name}: {self.power_mean:.2f} W at {rpm:.1f} rpm, {steps} steps"
 
     @property
-    def moments(self) -> JointMoments:
-        return self.torque.moments
+    def activation_of(self) -> dict[str, FloatArray]:
+        """Activation by name of leg and muscle group ("quadriceps", with two legs "right_quadriceps" ...)."""
+        names = [leg.prefix + group for leg in self.legs for group in GROUPS] if self.activation.size else []
+        return dict(zip(names, self.activation.T, strict=True))
 
     @property
     def power(self) -> FloatArray:
@@ -130,14 +136,14 @@ class Simulation(Brief):
 class BenchOptions:
     """How a model is run.
 
-    make_loop: compiled.compiled_loop steps in machine code, which pays beyond some hundred turns. torque: another map
-    than that of the moments. edit: changes the MjSpec before it is compiled. pre_roll: steps before the first that is
-    measured.
+    make_loop: compiled.compiled_loop steps in machine code, which pays beyond some hundred turns. torque: other joint
+    moments than those of the drive. edit: changes the MjSpec before it is compiled. pre_roll: steps before the first
+    that is measured.
     """
 
     physics: Physics = REAL
     make_loop: LoopMaker = feedback_loop
-    torque: TorqueMap | None = None
+    torque: TorqueSource | None = None
     edit: Callable[[Spec], None] | None = None
     pre_roll: int = PRE_ROLL
 
@@ -147,7 +153,7 @@ PLAIN = BenchOptions()
 
 def simulate(
     design: Design,
-    moments: JointMoments,
+    drive: Drive,
     *,
     cadence: float | None = None,
     timestep: float | None = None,
@@ -155,25 +161,27 @@ def simulate(
     legs: int = 1,
     options: BenchOptions = PLAIN,
 ) -> Simulation:
-    """Run turns of the model of build_mjcf (which has the same cadence, timestep and legs) under joint moments.
+    """Run turns of the model of build_mjcf (which has the same cadence, timestep and legs) under moments or muscles.
 
-    Raises InputError for a linkage that does not turn and for joints that never enter the moments' range, UnstableError
-    if the integration breaks down.
+    drive: JointMoments, or Muscles, of which it is the most probable rider. Raises InputError for a linkage that does
+    not turn and for joints that never enter the moments' range or leave that of the muscles' lengths, UnstableError if
+    the integration breaks down.
 
     >>> fes_mj.simulate(fes_mj.load_design("d1"), fes_mj.load_moments("p1p2"))
     <Simulation d1 p1p2: 31.14 W at 96.4 rpm, 2880 steps>
     """
-    cadence = valid_speed(design, moments, cadence, legs)
-    torque, pair = options.torque or torque_map(moments), LEGS[legs]
+    cadence, pair = driven_speed(design, drive, cadence, legs), LEGS[legs]
+    torque = options.torque or torque_source(drive, design, cadence)
     model_options = ModelOptions(options.physics, drawn=False)
     spec = build_mjcf(design, cadence=cadence, timestep=timestep, legs=legs, options=model_options)
     if options.edit:
         options.edit(spec)
+    add_motor_sensors(spec, pair)
     model, steps = spec.compile(), round(turns * steps_per_turn(design, cadence, timestep, turns))
-    drives = joint_drives(pair)
-    run = run_loop(model, options.make_loop(torque, drives), steps, options.pre_roll)
+    run = run_loop(model, options.make_loop(torque, pair), steps, options.pre_roll)
     return Simulation(
         design=design,
+        drive=drive,
         torque=torque,
         cadence=cadence,
         timestep=model.opt.timestep,
@@ -181,19 +189,17 @@ def simulate(
         legs=pair,
         mass_scale=options.physics.mass_scale,
         gravity=options.physics.gravity,
-        **_measured(model, run, torque, drives),
+        **_measured(model, run, pair),
     )
 
 
-def _measured(model: mujoco.MjModel, run: Run, torque: TorqueMap, drives: dict[str, str]) -> dict[str, Any]:
+def _measured(model: mujoco.MjModel, run: Run, legs: tuple[Leg, ...]) -> dict[str, Any]:
     """The measured fields of Simulation, out of the records of a run."""
     rows, loops = Sensors(model, run.sensors), [model.equality(i).name for i in range(model.neq)]
     forces, closed = run.fields["efc_force"], [loop for loop in loops if model.equality(loop).active0]
     angle = {name: rows[f"{name}_angle"][1:-1] for name in rows.joints}
     speed = {name: rows.speed(name) for name in rows.joints}
-    # what the feedback took for the speed, before the step
-    ahead = {name: 1.5 * rows[f"{name}_speed"][1:-1] - 0.5 * rows[f"{name}_speed"][:-2] for name in drives}
-    moment = {name: torque.of(name).moment(joint, angle[name], ahead[name]) for name, joint in drives.items()}
+    moment = {name: rows[f"{name}_moment"][1:-1] for name in joint_drives(legs)}
     crank_moment = rows.crank_moment()[1:-1] - friction_on_crank(model, speed)
 
     def work(of: FloatArray, at: FloatArray) -> float:
@@ -207,15 +213,23 @@ def _measured(model: mujoco.MjModel, run: Run, torque: TorqueMap, drives: dict[s
         "joint_angle": angle,
         "joint_speed": speed,
         "joint_moment": moment,
+        "activation": run.fields.get("activation", np.empty((len(angle["crank"]), 0))),
         "loop_gap": {loop: np.linalg.norm(rows.vector(f"{loop}_gap")[1:-1], axis=1) for loop in loops},
         "loop_force": {loop: -forces[:, 3 * i] - 1j * forces[:, 3 * i + 2] for i, loop in enumerate(closed)},
         "energy": Energy(
-            joint_work=sum(work(moment[name], speed[name]) for name in drives),
+            joint_work=sum(work(moment[name], speed[name]) for name in moment),
             crank_work=work(crank_moment, speed["crank"]),
             kinetic=run.end_energy[1] - run.start_energy[1],
             potential=run.end_energy[0] - run.start_energy[0],
         ),
     }
+
+
+def add_motor_sensors(spec: Spec, legs: tuple[Leg, ...]) -> None:
+    """Have the moments recorded that the joints' motors are told."""
+    kind, motor = mujoco.mjtSensor.mjSENS_ACTUATORFRC, mujoco.mjtObj.mjOBJ_ACTUATOR
+    for name in joint_drives(legs):
+        spec.add_sensor(name=f"{name}_moment", type=kind, objtype=motor, objname=name)
 
 
 def joint_drives(legs: tuple[Leg, ...]) -> dict[str, str]:

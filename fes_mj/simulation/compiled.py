@@ -16,7 +16,10 @@ from fes_mj.common.arrays import FloatArray
 from fes_mj.common.errors import require_extra
 from fes_mj.common.machine_code import kept_machine_code, machine_code, sources
 from fes_mj.linkage.joints import JOINTS
+from fes_mj.linkage.legs import Leg
+from fes_mj.linkage.torque_source import TorqueSource
 from fes_mj.moments.torque_map import TorqueMap, scalar_map
+from fes_mj.simulation.bench import joint_drives
 from fes_mj.simulation.road_control import Memory, RoadControl, act, memory_of
 from fes_mj.simulation.stepping import FORCE_EVERY, Loop, Records, drive_addresses
 
@@ -82,13 +85,16 @@ def record(row: int, fields: Fields, sensor_rows: FloatArray, force_rows: FloatA
             force_rows[row // FORCE_EVERY, i] = fields.efc_force[i]
 
 
-def compiled_loop(torque: TorqueMap, drives: dict[str, str]) -> Loop:
-    """The loop of stepping.feedback_loop for the drives (joint name -> "knee" or "hip") under a torque map.
+def compiled_loop(torque: TorqueSource, legs: tuple[Leg, ...]) -> Loop:
+    """The loop of stepping.feedback_loop for these legs under a torque map.
 
     It releases Python's lock: loops run side by side in threads.
     """
+    if not isinstance(torque, TorqueMap):
+        raise TypeError("the compiled loop takes a torque map")
     if torque.moments.left is not None:
         raise ValueError("the compiled loop takes the same moments for both legs")
+    drives = joint_drives(legs)
     knee, hip = ((torque.parameters(joint), torque.table[joint]) for joint in JOINTS)
     kinds = np.array([JOINTS.index(joint) for joint in drives.values()])
 

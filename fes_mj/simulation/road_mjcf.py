@@ -11,7 +11,7 @@ from fes_mj.linkage.inertia import GRAVITY
 from fes_mj.linkage.legs import TWO_LEGS
 from fes_mj.riding.ride import Ride
 from fes_mj.simulation.appearance import Spec
-from fes_mj.simulation.bench import joint_drives
+from fes_mj.simulation.bench import add_motor_sensors
 from fes_mj.simulation.mjcf import (
     INTEGRATORS,
     LOOP_SOLIMP,
@@ -93,10 +93,8 @@ def _add_sensors(spec: Spec, ride: Ride, driven: bool, compatible: bool) -> None
     kinds, objects = mujoco.mjtSensor, mujoco.mjtObj
     for name, kind in ((f"{ROAD}_angle", kinds.mjSENS_JOINTPOS), (f"{ROAD}_speed", kinds.mjSENS_JOINTVEL)):
         spec.add_sensor(name=name, type=kind, objtype=objects.mjOBJ_JOINT, objname=ROAD)
-    for joint in joint_drives(TWO_LEGS) if driven else ():
-        spec.add_sensor(
-            name=f"{joint}_moment", type=kinds.mjSENS_ACTUATORFRC, objtype=objects.mjOBJ_ACTUATOR, objname=joint
-        )
+    if driven:
+        add_motor_sensors(spec, TWO_LEGS)
     if not ride.fixed and not compatible:
         spec.add_sensor(
             name=DRIVETRAIN, type=kinds.mjSENS_TENDONLIMITFRC, objtype=objects.mjOBJ_TENDON, objname=DRIVETRAIN

@@ -9,7 +9,8 @@ import numpy as np
 
 from fes_mj.common.arrays import FloatArray
 from fes_mj.common.errors import UnstableError
-from fes_mj.moments.torque_map import TorqueMap
+from fes_mj.linkage.legs import Leg
+from fes_mj.linkage.torque_source import LegControl, TorqueSource
 
 # An exact pose with exact velocities still rings for a few steps, while the stiff loops find their forces.
 PRE_ROLL = 20  # steps
@@ -33,40 +34,60 @@ Records: TypeAlias = dict[str, FloatArray]
 Loop: TypeAlias = Callable[[mujoco.MjModel, mujoco.MjData, int], tuple[FloatArray, Records]]
 # Given a model, its data and a view of the speeds at the positions' own time: what sets the controls before each step.
 Control: TypeAlias = Callable[[mujoco.MjModel, mujoco.MjData, Any], Callable[[], None]]
-# Makes a loop that drives the given joints (name -> "knee" or "hip") by a torque map.
-LoopMaker: TypeAlias = Callable[[TorqueMap, dict[str, str]], Loop]
+# Makes a loop that drives these legs.
+LoopMaker: TypeAlias = Callable[[TorqueSource, tuple[Leg, ...]], Loop]
 
 
-def feedback_loop(torque_map: TorqueMap, drives: dict[str, str]) -> Loop:
-    """The loop in Python, the recorded field the constraint forces."""
-    return recording_loop({name: torque_map.of(name).feedback(joint) for name, joint in drives.items()})
-
-
-def recording_loop(
-    feedback: dict[str, Callable[[float, float], float]],
+def feedback_loop(
+    torque: TorqueSource,
+    legs: tuple[Leg, ...],
     record: tuple[str, ...] = ("efc_force",),
     every: int = FORCE_EVERY,
 ) -> Loop:
-    """A loop in which `feedback` maps a joint's angle and speed to the motor of the same name.
+    """The loop in Python. Its records are fields of MjData after the first and then after each `every` steps.
 
-    record: fields of MjData to read, each of constant size, after the first and then after each `every` steps.
+    record: names of these, each of constant size. With muscles also `activation` of all legs in every step, shape
+    (steps, groups of all legs).
     """
+    controls: list[LegControl] = []  # made for the first of several calls, as they remember
 
     def control(model: mujoco.MjModel, data: mujoco.MjData, speeds: Any) -> Callable[[], None]:
-        position_of, ctrl = memoryview(data.qpos), cast("Any", memoryview(data.ctrl))
-        drives = [(*drive_addresses(model, name), moment) for name, moment in feedback.items()]
+        controls.extend([] if controls else (torque.control(leg, model.opt.timestep) for leg in legs))
+        return actuation(dict(zip(legs, controls, strict=True)), model, data, speeds)
 
-        def act() -> None:
-            for actuator, position, speed, moment in drives:
-                ctrl[actuator] = moment(position_of[position], speeds[speed])
+    def loop(model: mujoco.MjModel, data: mujoco.MjData, count: int) -> tuple[FloatArray, Records]:
+        sensors, records = stepped(model, data, count)
+        if controls[0].activation:
+            records["activation"] = np.hstack([control.activation[-count:] for control in controls])
+        return sensors, records
 
-        return act
+    stepped = controlled_loop(control, record, every)
+    return loop
 
-    return controlled_loop(control, record, every)
+
+def actuation(
+    controls: dict[Leg, LegControl], model: mujoco.MjModel, data: mujoco.MjData, speeds: Any
+) -> Callable[[], None]:
+    """What sets the motors of legs, by the positions of the data and a view of speeds."""
+    position_of, ctrl = memoryview(data.qpos), cast("Any", memoryview(data.ctrl))
+    crank = int(model.joint("crank").qposadr[0])
+    drives = [
+        (control.moments, drive_addresses(model, f"{leg.prefix}knee"), drive_addresses(model, f"{leg.prefix}hip"))
+        for leg, control in controls.items()
+    ]
+
+    def act() -> None:
+        angle = position_of[crank]
+        for moments, (knee, knee_at, knee_rate), (hip, hip_at, hip_rate) in drives:
+            ctrl[knee], ctrl[hip] = moments(
+                angle, position_of[knee_at], position_of[hip_at], speeds[knee_rate], speeds[hip_rate]
+            )
+
+    return act
 
 
 def controlled_loop(control: Control, record: tuple[str, ...] = (), every: int = FORCE_EVERY) -> Loop:
-    """A loop that asks `control` before each step; otherwise as recording_loop."""
+    """A loop that asks `control` before each step; record, every: as of feedback_loop."""
 
     def loop(model: mujoco.MjModel, data: mujoco.MjData, count: int) -> tuple[FloatArray, Records]:
         # plain floats through memory views and rows as bytes cost half of numpy scalars and row assignment

@@ -5,7 +5,6 @@ Passive moments, which do no work over a turn, are left out as masses are.
 """
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -25,11 +24,15 @@ from fes_mj.statics.turn import DrivenTurn
 
 @dataclass(frozen=True, eq=False, repr=False)
 class MuscleStatic(DrivenTurn):
-    """One turn of the massless model under muscles, of so many legs; `stimulated` has every rider's."""
+    """One turn of the massless model under muscles, of so many legs; `stimulated` has every rider's.
+
+    member: number of the rider whose turn it is; without one it is the expected turn.
+    """
 
     rule: str
     stimulated: Stimulated
     legs: int = 1
+    member: int | None = None
 
     @classmethod
     def solve(
@@ -50,6 +53,11 @@ class MuscleStatic(DrivenTurn):
         return self
 
     @property
+    def turns(self) -> "tuple[MuscleStatic]":
+        """The turns that differ, as LegTurns has them."""
+        return (self,)
+
+    @property
     def powers(self) -> FloatArray:
         """Mean crank power of one leg of each rider, W, shape (members,)."""
         return np.asarray(self.stimulated.power.mean(axis=1))
@@ -63,10 +71,10 @@ class MuscleStatic(DrivenTurn):
         """Expected power per another design's, and the standard deviation of the riders' own ratios."""
         return self.power_mean / other.power_mean, float((self.powers / other.powers).std())
 
-    @cached_property
+    @property
     def most_probable(self) -> int:
         """Number of the rider with the largest density."""
-        return int(np.argmax(self.stimulated.riders.likelihood))
+        return self.stimulated.most_probable
 
     @property
     def windows_deg(self) -> dict[str, list[float] | None] | None:
@@ -87,7 +95,7 @@ class MuscleStatic(DrivenTurn):
     def summary(self) -> dict[str, Any]:
         """As DrivenTurn.summary; power and work are one leg's, evenness is that of all legs together."""
         both, riders, windows = all_legs(self.power), self.stimulated.riders, self.stimulated.windows
-        turn = self.stimulated.turn
+        turn, whose = self.stimulated.turn, slice(None) if self.member is None else self.member
         share = None if windows is None else windows.width.mean(axis=(1, 2)) / 360
         return super().summary() | {
             "drive": "muscles",
@@ -96,7 +104,7 @@ class MuscleStatic(DrivenTurn):
             "legs": self.legs,
             "power_sd_W": self.power_sd,
             "power_mode_W": float(self.powers[self.most_probable]),
-            "muscle_power_W": None if turn is None else float(turn.power_mean.mean()),
+            "muscle_power_W": None if turn is None else float(turn.power_mean[whose].mean()),
             "power_two_legs_min_W": float(both.min()),
             "negative_share": float(np.mean(both < 0)),
             **power_characteristics(all_legs(self.power, self.legs)),

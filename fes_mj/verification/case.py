@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from fes_mj.crosscheck.turn_case import Case
+from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.riding.ride import TRANSMISSIONS, Ride, Road
 from fes_mj.verification import energy
 from fes_mj.verification.references import Curves, differences, exact_curves
@@ -21,7 +22,17 @@ STEEP_DURATION = 3.0  # s
 RIDE_DURATION = 5.0  # s: some eight turns; studies/ride_verification.py rides a minute
 # Of a summary, what a table of runs shows.
 _ROW = (
-    *("design", "group", "cadence_rpm", "timestep_s", "power_mean_W", "static_power_mean_W", "relative_difference"),
+    *(
+        "design",
+        "group",
+        "drive",
+        "timing",
+        "cadence_rpm",
+        "timestep_s",
+        "power_mean_W",
+        "static_power_mean_W",
+        "relative_difference",
+    ),
     *("work_per_turn_J", "loop_gap_max_m"),
 )
 
@@ -57,7 +68,9 @@ class VerificationCase(Case):
         """Short rides launched at the speed of the cadence: flat with either transmission, and rolling back."""
         from fes_mj.crosscheck.ride_case import RideCase  # needs SciPy, which a turn does not
 
-        ride = Ride(self.design, self.moments, duration=RIDE_DURATION)
+        if not isinstance(self.drive, JointMoments):
+            return []
+        ride = Ride(self.design, self.drive, duration=RIDE_DURATION)
         ride = replace(ride, launch=self.cadence * ride.travel)
         flat = [replace(ride, transmission=kind) for kind in TRANSMISSIONS]
         steep = replace(ride, transmission="fixed", road=STEEP, duration=STEEP_DURATION)

@@ -9,7 +9,7 @@ from fes_mj.crosscheck.turn_case import Case
 from fes_mj.linkage.legs import ONE_LEG
 from fes_mj.simulation.bench import Energy, joint_drives
 from fes_mj.simulation.mjcf import SERVO
-from fes_mj.simulation.stepping import Sensors, recording_loop, run_loop
+from fes_mj.simulation.stepping import Sensors, feedback_loop, run_loop
 from fes_mj.simulation.time_step import steps_per_turn
 
 
@@ -50,9 +50,8 @@ def audit(case: Case) -> Audit:
     """Run one turn of a case as `simulate` does, and record the forces of every kind."""
     model, steps = case.steps.spec().compile(), steps_per_turn(case.design, case.cadence, case.timestep)
     drives = joint_drives(ONE_LEG)
-    feedback = {name: case.steps.torque.of(name).feedback(joint) for name, joint in drives.items()}
     forces = ("ctrl", "qfrc_constraint", "qfrc_passive", "actuator_force")
-    run = run_loop(model, recording_loop(feedback, forces, every=1), steps)
+    run = run_loop(model, feedback_loop(case.steps.torque, ONE_LEG, forces, every=1), steps)
     rows = Sensors(model, run.sensors)
     # of every joint in every step, rad
     travel = np.column_stack([rows.speed(joint) for joint in rows.joints]) * model.opt.timestep

@@ -12,8 +12,17 @@ from typing import Any, NamedTuple, TypeAlias
 from fes_mj.common.checks import Check, definitions
 from fes_mj.common.errors import InputError
 from fes_mj.linkage.design import Design
+from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.verification.case import VerificationCase
-from fes_mj.verification.suite import FULL, QUICK, CheckGroup, refinement_checks, ride_checks, verify
+from fes_mj.verification.suite import (
+    FULL,
+    QUICK,
+    CheckGroup,
+    refinement_checks,
+    ride_checks,
+    two_leg_checks,
+    verify,
+)
 
 Steps: TypeAlias = dict[str, Any]  # step of a pipeline or of a RideCase -> what takes its place
 
@@ -22,7 +31,8 @@ class Fault(NamedTuple):
     """A mistake, the checks that stand guard against it, and how it is made.
 
     steps: step of the pipeline -> what takes its place. ride_steps: the same of a RideCase. edit: of the design where
-    its file is read. kinds: linkages that can have it.
+    its file is read. kinds: linkages that can have it. drive: what must drive them, "moments" or "muscles", if it
+    matters. legs: how many there must be for it to show.
     """
 
     name: str
@@ -32,17 +42,22 @@ class Fault(NamedTuple):
     ride_steps: Mapping[str, Any] = {}
     edit: Callable[[Design], Design] | None = None
     kinds: tuple[str, ...] = ("trt", "crt", "cdt")
+    drive: str = ""
+    legs: int = 1
 
     def applies(self, case: VerificationCase) -> bool:
         """Whether the mistake can be made in this case, and be noticed."""
         edited = self.edit is None or (case.file is not None and self.edit(case.design) != case.design)
-        return case.design.linkage.kind in self.kinds and edited
+        driven = self.drive in ("", "moments" if isinstance(case.drive, JointMoments) else "muscles")
+        return case.design.linkage.kind in self.kinds and edited and driven
 
     @property
     def groups(self) -> tuple[CheckGroup, ...]:
         """Of the suite, those that can notice: the rides, or the quick ones and what only refinement can see."""
         if self.ride_steps:
             return (ride_checks,)
+        if self.legs > 1:
+            return (two_leg_checks,)
         refined = any(definitions()[guard].kind == "solution verification" for guard in self.guards)
         return (*QUICK, refinement_checks) if refined else QUICK
 

@@ -8,7 +8,7 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache, cached_property
-from typing import Any
+from typing import Any, cast
 
 import mujoco
 import numpy as np
@@ -23,6 +23,7 @@ from fes_mj.linkage.joints import PerJoint
 from fes_mj.linkage.kinematics import Jet, Motion, Rotation
 from fes_mj.linkage.legs import TWO_LEGS
 from fes_mj.linkage.variables import ALL
+from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.moments.torque_map import GRID, TorqueMap
 from fes_mj.riding.trace import Trace, ride as ride_by_equation
@@ -33,6 +34,7 @@ from fes_mj.simulation.road_mjcf import DRIVETRAIN, ROAD
 from fes_mj.simulation.time_step import steps_per_turn
 from fes_mj.statics.equilibrium import equilibrium, joint_couples, moment_arm
 from fes_mj.verification.faults import Fault, Steps, in_model
+from fes_mj.verification.muscle_mistakes import MUSCLE_STEPS
 
 _FILE = DATA / "faults.toml"
 
@@ -57,7 +59,8 @@ def without_length(motion: Motion, body: str, point: str) -> Any:
 
 
 def by_crank_angle(steps: Pipeline, motion: Motion, leg: str = "") -> PerJoint[FloatArray]:
-    return steps.moments.at(motion.crank_angle - steps.moments.measured_on.top_dead_centre)
+    moments = cast("JointMoments", steps.drive)
+    return moments.at(motion.crank_angle - moments.measured_on.top_dead_centre)
 
 
 def knee_below(motion: Motion) -> Motion:
@@ -85,7 +88,7 @@ def long_thigh(motion: Motion) -> Motion:
 
 
 def in_map(kind: type[TorqueMap]) -> Steps:
-    return {"torque": cached_property(lambda steps: kind(steps.moments))}
+    return {"torque": cached_property(lambda steps: kind(steps.drive))}
 
 
 class Misread(TorqueMap):
@@ -257,10 +260,12 @@ def faults() -> tuple[Fault, ...]:
             name,
             row["mistake"],
             tuple(row["guards"]),
-            steps=STEPS.get(name, {}),
+            steps=STEPS.get(name) or MUSCLE_STEPS.get(name, {}),
             ride_steps=RIDE_STEPS.get(name, {}),
             edit=EDITS.get(name),
             kinds=tuple(row.get("kinds", ALL)),
+            drive=row.get("drive", ""),
+            legs=row.get("legs", 1),
         )
         for name, row in rows.items()
     )

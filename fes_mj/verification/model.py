@@ -1,4 +1,4 @@
-"""The torque map and the MuJoCo model before anything moves: do they say what they were told?"""
+"""Torque map or muscles, and the MuJoCo model, before anything moves: do they say what they were told?"""
 
 import math
 from collections.abc import Iterator
@@ -11,7 +11,10 @@ from fes_mj.common.checks import Check
 from fes_mj.crosscheck.turn_case import Case
 from fes_mj.linkage import kinematics
 from fes_mj.linkage.joints import JOINTS
-from fes_mj.moments.torque_map import GRID, TABLE_SIZE
+from fes_mj.moments.torque_map import GRID, TABLE_SIZE, TorqueMap
+from fes_mj.muscles.anatomy import GROUPS
+from fes_mj.muscles.pull import pull
+from fes_mj.muscles.torque import MuscleTorque
 from fes_mj.simulation.export import mjcf_text
 from fes_mj.simulation.mjcf import CUTS
 
@@ -25,21 +28,40 @@ FIELDS = (
 
 def map_checks(case: Case) -> Iterator[Check]:
     """The torque map on the tricycle it was made from, and its two implementations against each other."""
+    torque = case.steps.torque
+    if not isinstance(torque, TorqueMap):
+        return
     motion, spread = case.steps.motion(np.linspace(0, 2 * np.pi, 360, endpoint=False)), 0.0
     for joint in JOINTS:
         angle, rate = motion.joint_angle[joint], case.cadence * motion.joint_rate[joint]
-        scalar, array = case.steps.torque.feedback(joint), case.steps.torque.moment(joint, angle, rate)
+        scalar, array = torque.feedback(joint), torque.moment(joint, angle, rate)
         values = [scalar(*pair) for pair in zip(angle.tolist(), rate.tolist(), strict=True)]
         spread = max(spread, float(np.abs(values - array).max()))
-    yield case.check("torque_map", map_error(case))
+    yield case.check("torque_map", map_error(torque))
     yield case.check("map_feedback", spread)
 
 
-def map_error(case: Case) -> float:
+def muscle_checks(case: Case) -> Iterator[Check]:
+    """Muscles of one state against those of a whole turn, each group fully active alone."""
+    torque = case.steps.torque
+    if not isinstance(torque, MuscleTorque):
+        return
+    motion, cadence = case.steps.motion(np.linspace(0, 2 * np.pi, 90, endpoint=False)), case.cadence
+    expected = pull(torque.riders, motion, cadence).moment
+    rates = motion.joint_rate.map(lambda rate: cadence * rate)
+    states, spread = np.column_stack([*motion.joint_angle, *rates]).tolist(), 0.0
+    for group, active in enumerate(np.eye(len(GROUPS)).tolist()):
+        knee, hip = np.transpose([torque.moments_of(torque.leg, active, *state) for state in states])
+        apart = (knee - expected.knee[group, 0, 0], hip - expected.hip[group, 0, 0])
+        spread = max(spread, float(np.abs(apart).max()))
+    yield case.check("muscle_moments", spread)
+
+
+def map_error(torque: TorqueMap) -> float:
     """On its own tricycle the map must give the moments back, at every 0.1 deg of crank angle, N m."""
-    after, reference = GRID[:TABLE_SIZE], case.moments.measured_on  # from top dead centre
+    after, reference = GRID[:TABLE_SIZE], torque.moments.measured_on  # from top dead centre
     motion = kinematics.solve(reference.design, reference.top_dead_centre + after)
-    given, mapped = case.moments.at(after), case.steps.torque.along(motion, reference.cadence)
+    given, mapped = torque.moments.at(after), torque.along(motion, reference.cadence)
     return max(float(np.abs(mapped[joint] - given[joint]).max()) for joint in JOINTS)
 
 

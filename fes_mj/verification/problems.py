@@ -23,7 +23,7 @@ from fes_mj.linkage.design import Design, Linkage, Rider
 from fes_mj.linkage.inertia import GRAVITY, Inertia
 from fes_mj.simulation.appearance import Spec
 from fes_mj.simulation.mjcf import AXIS, LOOP_SOLIMP, ModelOptions, Physics, add_body, build_mjcf, set_options
-from fes_mj.simulation.stepping import Sensors, recording_loop, run_loop
+from fes_mj.simulation.stepping import Sensors, controlled_loop, run_loop
 
 WINDOWS = 2  # of the chain, as in the library's table of results
 CHAIN_TIME = 10.0  # s
@@ -147,7 +147,7 @@ def run_four_bar() -> tuple[float, float]:
         body, mass = spec.body(name), BAR_DENSITY * length * BAR_WIDTH**2
         body.mass, body.ipos, body.inertia = mass, (length / 2, 0, 0), [mass * (length**2 + BAR_WIDTH**2) / 12] * 3
     model = spec.compile()
-    run = run_loop(model, recording_loop({}), round(FOUR_BAR_TURNS / FOUR_BAR_TIMESTEP))
+    run = run_loop(model, controlled_loop(lambda *_: lambda: None), round(FOUR_BAR_TURNS / FOUR_BAR_TIMESTEP))
 
     rows = Sensors(model, run.sensors)
     crank, rocker, knee = (rows[f"{joint}_angle"] for joint in ("crank", "hip", "knee"))

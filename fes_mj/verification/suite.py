@@ -10,10 +10,11 @@ from fes_mj.common.checks import Check, check
 from fes_mj.common.errors import UnstableError
 from fes_mj.common.units import turns_per_second
 from fes_mj.linkage.assembly import joint_ranges
+from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.simulation.mjcf import SERVO_GAIN
 from fes_mj.verification.case import VerificationCase
 from fes_mj.verification.geometry import file_checks, geometry_checks
-from fes_mj.verification.model import map_checks, model_checks
+from fes_mj.verification.model import map_checks, model_checks, muscle_checks
 from fes_mj.verification.references import exact_checks
 
 
@@ -63,9 +64,10 @@ def printed_checks(case: VerificationCase) -> Iterator[Check]:
         return
     ranges = np.array([*printed.knee_range, *printed.hip_range])
     yield case.check("joint_range", np.abs(joint_ranges(case.design) - ranges).max())
-    if case.moments.name in printed.power:
+    drive = case.drive
+    if isinstance(drive, JointMoments) and drive.name in printed.power:
         power = case.static.work_per_turn * turns_per_second(case.design.linkage.cadence)  # printed at its own cadence
-        yield case.check("printed_power", abs(power - printed.power[case.moments.name]))
+        yield case.check("printed_power", abs(power - printed.power[drive.name]))
 
 
 def ride_checks(case: VerificationCase) -> Iterator[Check]:
@@ -76,7 +78,7 @@ def ride_checks(case: VerificationCase) -> Iterator[Check]:
 
 CheckGroup: TypeAlias = Callable[[VerificationCase], Iterator[Check]]
 QUICK: tuple[CheckGroup, ...] = (
-    *(geometry_checks, file_checks, map_checks, exact_checks, model_checks, turn_checks),
+    *(geometry_checks, file_checks, map_checks, muscle_checks, exact_checks, model_checks, turn_checks),
     printed_checks,
 )
 

@@ -85,7 +85,7 @@ def _draw_power(figure: Figure, case: Case) -> Axes:
     axes.axhline(mean, color=COLOURS["mujoco"], lw=1, ls=":", label=f"mean of MuJoCo, {mean:.1f} W")
     axes.legend(loc="lower left", bbox_to_anchor=(-0.02, 1.0), fontsize=11)
     legs = "one leg" if len(run.legs) == 1 else "two legs"
-    write_title(figure, run.design, f"joint moments {run.moments.name.upper()}, {run.cadence / RPM:.1f} rpm, {legs}")
+    write_title(figure, run.design, f"{run.drive.driver}, {run.cadence / RPM:.1f} rpm, {legs}")
     facts = (
         ("mean power, MuJoCo", f"{run.power_mean:.3f} W a leg", COLOURS["mujoco"]),
         ("mean power, quasi-static", f"{case.statics.power_mean:.3f} W a leg", COLOURS["quasi-static"]),

@@ -7,7 +7,7 @@ import pytest
 
 import fes_mj
 from fes_mj.common.errors import UnstableError
-from fes_mj.linkage.joints import JOINTS
+from fes_mj.linkage.legs import ONE_LEG
 from fes_mj.moments.torque_map import torque_map
 from fes_mj.simulation.mjcf import build_mjcf
 from fes_mj.simulation.stepping import Sensors, feedback_loop, run_loop
@@ -26,7 +26,7 @@ def test_a_run_that_breaks_down_says_so(
 def test_speed_is_the_slope_of_the_angle(smooth_moments: fes_mj.JointMoments) -> None:
     """Of the step before and the step after together: MuJoCo's own speed is that of the step before alone."""
     model = build_mjcf(fes_mj.load_design("d1")).compile()
-    loop = feedback_loop(torque_map(smooth_moments), {joint: joint for joint in JOINTS})
+    loop = feedback_loop(torque_map(smooth_moments), ONE_LEG)
     rows, step = Sensors(model, run_loop(model, loop, 400).sensors), model.opt.timestep
     for joint in rows.joints:
         angle = rows[f"{joint}_angle"]

@@ -18,6 +18,16 @@ def case_of(source: str) -> VerificationCase:
     )
 
 
+def muscle_case_of(source: str, group: str = "p1p2", timing: str = "best") -> VerificationCase:
+    """A design under the most probable rider's muscles."""
+    return VerificationCase(fes_mj.load_design(source), fes_mj.load_muscles(group, timing), file=design_path(source))
+
+
+@pytest.fixture(scope="module")
+def muscle_case() -> VerificationCase:
+    return muscle_case_of("d1")
+
+
 @pytest.fixture(scope="module")
 def case() -> VerificationCase:
     return case_of("d1")

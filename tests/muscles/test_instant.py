@@ -3,14 +3,15 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from fes_mj.common.machine_code import readable
+from fes_mj.common.machine_code import in_lists, readable
 from fes_mj.linkage import kinematics
 from fes_mj.linkage.design_file import DESIGNS, load_design
+from fes_mj.muscles import instant, step
 from fes_mj.muscles.activation import answer, trapezium
 from fes_mj.muscles.anatomy import GROUPS
-from fes_mj.muscles.contraction import PLATEAU
+from fes_mj.muscles.contraction import PLATEAU, tension
+from fes_mj.muscles.instant import LegMuscles, Stimulus, activated, joint_moments, stimulation, weights
 from fes_mj.muscles.pull import pull
-from fes_mj.muscles.step import LegMuscles, Stimulus, activated, joint_moments, stimulation, tension, weights
 from fes_mj.muscles.timing import ANGLES, Windows, activation
 
 GROUP_NUMBERS = range(len(GROUPS))
@@ -29,7 +30,7 @@ def test_moments_are_those_of_the_turn(name, riders):
     motion, cadence = kinematics.solve(design, ANGLES[::20]), design.linkage.cadence
     for row in (0, 5):
         pulled = pull(riders.taken([row]), motion, cadence).moment
-        leg = readable(LegMuscles.of(riders.taken([row]), design.rider))
+        leg = in_lists(LegMuscles.of(riders.taken([row]), design.rider))
         for group in GROUP_NUMBERS:
             alone = curves(leg, motion, cadence, np.eye(len(GROUPS))[group])
             for joint, curve in zip(("knee", "hip"), alone, strict=True):
@@ -40,7 +41,7 @@ def test_moments_are_those_of_the_turn(name, riders):
 def test_moments_are_the_groups_together(riders):
     design = load_design("d2")
     motion = kinematics.solve(design, ANGLES[::60])
-    leg, share = readable(LegMuscles.of(riders.taken([2]), design.rider)), np.array([0.3, 0.5, 0.7])
+    leg, share = in_lists(LegMuscles.of(riders.taken([2]), design.rider)), np.array([0.3, 0.5, 0.7])
     apart = [curves(leg, motion, 9.0, row) for row in np.diag(share)]
     assert curves(leg, motion, 9.0, share) == pytest.approx(np.sum(apart, axis=0), rel=1e-12)
 
@@ -58,18 +59,42 @@ def test_fibres_do_the_work_that_joints_do(riders):
     power = 0.0
     for muscle in range(len(leg.group)):
         speed = (length(muscle, step) - length(muscle, -step)) / (2 * step)
-        parameters = (leg.optimal, leg.slack, leg.thickness, leg.max_speed)
-        pulled = tension(length(muscle, 0), speed, *(float(column[muscle]) for column in parameters))
-        power -= leg.force[muscle] * pulled * speed
-    moments = joint_moments(readable(leg), np.ones(len(GROUPS)), knee, hip, *rates.tolist())
+        optimal, pennation = leg.optimal[muscle], np.arcsin(leg.thickness[muscle] / leg.optimal[muscle])
+        state = np.array([length(muscle, 0)]), np.array([speed])
+        pulled, _ = tension(*state, optimal, leg.slack[muscle], pennation, leg.max_speed[muscle] / optimal)
+        power -= leg.force[muscle] * pulled[0] * speed
+    moments = joint_moments(in_lists(leg), np.ones(len(GROUPS)), knee, hip, *rates.tolist())
     assert moments @ rates == pytest.approx(power, rel=1e-6)
 
 
-def test_tension_is_hills_at_its_ends():
-    muscle = (0.1, 0.3, 0.0, 0.8)
-    ends = [tension(0.4, speed, *muscle) for speed in (0.0, -0.8, -5.0, 0.8, 5.0)]
-    assert ends == pytest.approx([1, 0, 0, PLATEAU, PLATEAU])
-    assert tension(0.3, 0.0, *muscle) == tension(0.2, 0.0, *muscle) == 0
+def test_a_muscle_is_hills_at_its_ends():
+    """One muscle with a moment arm of 5 cm at the knee, at its optimal length, and slack."""
+    knee_alone = np.zeros((1, 2, 2))
+    knee_alone[0, :, 0] = 0.4, 0.05
+    columns = np.ones((4, 1)) * [[100.0], [0.1], [0.3], [0.0]]
+    one, none = np.ones(1, int), np.zeros(1, int)
+    leg = LegMuscles(none, knee_alone, one, none, np.zeros(2), *columns, np.array([0.8]), 0.1, 0.1, 0.0)
+    leg = in_lists(leg)
+
+    def pulled(knee, shortening):
+        return joint_moments(leg, [1.0], knee, 1.0, shortening / 0.05, 0.0)[0] / 100 / 0.05
+
+    assert [pulled(0.0, speed) for speed in (0.0, 0.8, 5.0, -0.8, -5.0)] == pytest.approx([1, 0, 0, PLATEAU, PLATEAU])
+    assert pulled(0.9, 0.0) == pytest.approx(np.exp(-1))
+    assert pulled(2.1, 0.0) == pulled(3.0, 0.0) == 0
+
+
+def test_machine_code_says_the_same(riders):
+    leg, stimulus = LegMuscles.of(riders.taken([6]), load_design("r1").rider), Stimulus(*np.ones((2, 3)), 0.4)
+    state, active = (1.8, 1.5, -2.0, 1.0), np.array([0.2, 0.9, 0.4])
+    for function, arguments in {
+        "joint_moments": (leg, active, *state),
+        "stimulation": (stimulus, 1, 7.5),
+        "weights": (0.01, 0.08),
+        "activated": (0.3, 0.4, 0.5, (0.9, 0.04, 0.06), (0.8, 0.1, 0.1)),
+    }.items():
+        given = getattr(step, function)(*map(readable, arguments))
+        assert given == pytest.approx(getattr(instant, function)(*map(in_lists, arguments)), rel=1e-13)
 
 
 def test_stimulation_is_the_trapezium_over_any_turns():
@@ -77,7 +102,7 @@ def test_stimulation_is_the_trapezium_over_any_turns():
     stimulus, angles = Stimulus.of(windows, cadence=7.0), np.linspace(-7, 14, 211)
     for group in GROUP_NUMBERS:
         expected = trapezium(angles - stimulus.on[group], stimulus.width[group], stimulus.ramp)
-        given = [stimulation(readable(stimulus), group, angle) for angle in angles.tolist()]
+        given = [stimulation(in_lists(stimulus), group, angle) for angle in angles.tolist()]
         assert given == pytest.approx(expected, abs=1e-14)
 
 
@@ -102,7 +127,7 @@ def test_fine_steps_tell_what_a_turn_of_whole_degrees_leaves_open(riders):
     leg, stimulus = LegMuscles.of(member, design.rider), Stimulus.of(windows, cadence)
     shift = cadence * leg.delay
     angles = np.arange(-4 * steps, steps) * (2 * np.pi / steps)
-    given = [stimulation(readable(stimulus), 0, angle - shift) for angle in angles.tolist()]
+    given = [stimulation(in_lists(stimulus), 0, angle - shift) for angle in angles.tolist()]
     rising, falling = (weights(2 * np.pi / cadence / steps, constant) for constant in (leg.rise, leg.fall))
     values = [0.0]
     for before, after in pairwise(given):

@@ -1,0 +1,167 @@
+"""One rider's stimulated muscles at one instant, in plain numbers: what a simulation asks for in every step.
+
+A second implementation of what activation, contraction and pull say of a whole turn: these functions know one state of
+one leg, muscle after muscle. `step` has them in machine code, which is why none calls another.
+"""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from fes_mj.common.arrays import FloatArray, IntArray
+from fes_mj.linkage.design import Rider
+from fes_mj.muscles.anatomy import anatomy
+from fes_mj.muscles.contraction import CURVATURE, LENGTHENING, PLATEAU, WIDTH
+from fes_mj.muscles.geometry import CENTRE, exponents
+from fes_mj.muscles.prior import ramp
+from fes_mj.muscles.riders import Riders
+from fes_mj.muscles.timing import Windows
+
+
+class LegMuscles(NamedTuple):
+    """The muscles of one rider's leg; arrays by muscle, shape (muscles,).
+
+    group: number in GROUPS. lengths: m, coefficients by powers of knee, then hip flexion from `straight`, shape
+    (muscles, powers, powers); knee_power, hip_power: the largest that a muscle has. straight: knee and hip angle from
+    which flexion counts there, rad. force: N, of the rider's muscles, times how much longer these are than the
+    lengths say. optimal, slack: m. thickness: m, of the fibres. max_speed: m/s. rise, fall, delay: s.
+    """
+
+    group: IntArray
+    lengths: FloatArray
+    knee_power: IntArray
+    hip_power: IntArray
+    straight: FloatArray
+    force: FloatArray
+    optimal: FloatArray
+    slack: FloatArray
+    thickness: FloatArray
+    max_speed: FloatArray
+    rise: float
+    fall: float
+    delay: float
+
+    @classmethod
+    def of(cls, member: Riders, rider: Rider) -> "LegMuscles":
+        """Of one member of an ensemble with the segments of this rider."""
+        muscles, value = anatomy(), {name: float(column[0]) for name, column in member.values.items()}
+        powers = exponents(muscles.lengths.degree)
+        lengths = np.zeros((len(muscles.names), *[muscles.lengths.degree + 1] * 2))
+        for (hip, knee), column in zip(powers, muscles.lengths.coefficients.T, strict=True):
+            lengths[:, knee, hip] = column
+        used = lengths != 0
+        scale = muscles.length_scale(rider).ravel()
+        offset = np.array([0.0, np.radians(value["hip_offset_deg"])])
+        return cls(
+            group=muscles.group,
+            lengths=lengths,
+            knee_power=_largest(used.any(axis=2)),
+            hip_power=_largest(used.any(axis=1)),
+            straight=np.pi + offset - CENTRE[::-1],
+            force=muscles.force * member.strength(muscles).ravel() * scale,
+            optimal=muscles.optimal,
+            slack=member.slack(muscles).ravel(),
+            thickness=muscles.optimal * np.sin(muscles.pennation),
+            max_speed=value["max_speed"] * muscles.optimal,
+            rise=value["rise_s"],
+            fall=value["rise_s"] * value["fall_per_rise"],
+            delay=value["delay_s"],
+        )
+
+
+def _largest(used: Any) -> IntArray:
+    """Largest power that is used, shape (muscles,), of flags by power."""
+    return np.asarray(used.shape[1] - 1 - used[:, ::-1].argmax(axis=1))
+
+
+class Stimulus(NamedTuple):
+    """Windows of one rider by group, rad of crank angle, shape (groups,); ramp: rad, in which stimulation grows."""
+
+    on: FloatArray
+    width: FloatArray
+    ramp: float
+
+    @classmethod
+    def of(cls, windows: Windows, cadence: float) -> "Stimulus":
+        """Windows of one member on one design, with the ramp at this cadence, rad/s."""
+        on, width = (np.radians(values[:, 0, 0]) for values in (windows.on, windows.width))
+        return cls(on, width, cadence * ramp())
+
+
+def stimulation(stimulus: Stimulus, group: int, angle: float) -> float:
+    """Stimulation of a group in [0, 1] at a crank angle, rad, by any whole turns (activation.trapezium)."""
+    width: float = stimulus.width[group]
+    passed: float = (angle - stimulus.on[group]) % (2 * math.pi)
+    return max(0.0, min(1.0, passed / stimulus.ramp, (width - passed) / stimulus.ramp))
+
+
+def weights(step: float, constant: float) -> tuple[float, float, float]:
+    """What activation and stimulation before a step, and stimulation after it, count for in activation after it.
+
+    Exact for a stimulation that is linear over the step and one time constant; both in s.
+    """
+    kept = math.exp(-step / constant)
+    follows = (1 - kept) * constant / step
+    return kept, follows - kept, 1 - follows
+
+
+def activated(
+    activation: float,
+    before: float,
+    after: float,
+    rising: tuple[float, float, float],
+    falling: tuple[float, float, float],
+) -> float:
+    """Activation after a step; before, after: stimulation. rising, falling: `weights` of the two time constants.
+
+    Always as the constant says that leaves it the higher (activation.answer).
+    """
+    up = rising[0] * activation + rising[1] * before + rising[2] * after
+    down = falling[0] * activation + falling[1] * before + falling[2] * after
+    return max(up, down)
+
+
+def joint_moments(
+    leg: LegMuscles, activation: Any, knee: float, hip: float, knee_rate: float, hip_rate: float
+) -> tuple[float, float]:
+    """Moments of knee and hip, N m, positive in extension, without passive ones (pull.Pull, contraction.tension).
+
+    activation: by group. knee, hip: angles, rad, and rates, rad/s, that grow in extension.
+    """
+    bent_knee, bent_hip = leg.straight[0] - knee, leg.straight[1] - hip
+    knee_moment = hip_moment = 0.0
+    for muscle in range(len(leg.group)):
+        active = activation[leg.group[muscle]]
+        if active <= 0:
+            continue
+        # Horner's rule for the polynomial and its derivatives, the moment arms
+        length = by_knee = by_hip = 0.0
+        rows, orders = leg.lengths[muscle], leg.hip_power[muscle] + 1
+        for power in range(leg.knee_power[muscle], -1, -1):
+            value = slope = 0.0
+            row = rows[power]
+            for order in range(min(orders, len(rows) - power) - 1, -1, -1):
+                slope = slope * bent_hip + value
+                value = value * bent_hip + row[order]
+            by_knee = by_knee * bent_knee + length
+            length = length * bent_knee + value
+            by_hip = by_hip * bent_knee + slope
+        along, thickness, optimal = length - leg.slack[muscle], leg.thickness[muscle], leg.optimal[muscle]
+        if along <= 0:
+            continue
+        fibre = math.sqrt(along * along + thickness * thickness)
+        cosine = along / fibre
+        shortening = (by_knee * knee_rate + by_hip * hip_rate) * cosine / leg.max_speed[muscle]
+        if shortening >= 1:
+            continue
+        if shortening >= 0:
+            factor = (1 - shortening) / (1 + shortening / CURVATURE)
+        else:
+            lengthening = max(shortening, -1.0)
+            factor = 1 + lengthening * (PLATEAU - 1) * (LENGTHENING + 1) / (LENGTHENING * lengthening - 1)
+        apart = (fibre / optimal - 1) / WIDTH
+        force = leg.force[muscle] * active * math.exp(-apart * apart) * factor * cosine
+        knee_moment += force * by_knee
+        hip_moment += force * by_hip
+    return knee_moment, hip_moment
