@@ -110,7 +110,7 @@ def _cases(designs: Sequence[str], options: RunOptions, drive: DriveOptions, qui
     chosen = [options] if quick or options.group or options.moments or drive.muscles else both
     for design in dict.fromkeys(designs):
         for choice in chosen:
-            yield checked_case(design, choice, drive, refined=not quick)
+            yield checked_case(design, choice, drive, refined=not (quick or drive.timing == "stimulation-by-angle"))
 
 
 def _check_files(report: Path | None, junit: Path | None, video: Path | None, inputs: list[Path]) -> None:

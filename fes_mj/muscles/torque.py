@@ -23,10 +23,10 @@ from fes_mj.muscles.rules import LEADING, Stimulated, stimulated_by_joint
 from fes_mj.muscles.stepping import Memory, MuscleStepper, Stimulator, steady
 from fes_mj.muscles.timing import responded
 
-# Crank angles of a turn at which activation is known where a power curve is compared. With windows four times as many
-# as of a result that stands by itself, so that their corners hide a sixteenth. By joint angles stimulation jumps
-# where a joint turns round, and what is hidden only falls with the distance.
-_FINE, _FINE_BY_JOINT = 1440, 7200
+# Crank angles of a turn at which activation is known where a power curve is compared: what corners of windows hide in
+# between is then less than the error of the finest time step of a refinement.
+_FINE = 7200
+_FINE_TURN = np.arange(_FINE) * (2 * np.pi / _FINE)
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,31 +60,26 @@ class MuscleTorque:
 
     def activation(self, crank_angle: FloatArray) -> FloatArray:
         """Of each group at crank angles, rad, shape (groups, angles)."""
-        return np.stack([np.interp(crank_angle, self._turn, group, period=2 * np.pi) for group in self._answer])
+        return np.stack([np.interp(crank_angle, _FINE_TURN, group, period=2 * np.pi) for group in self._answer])
 
     def hidden(self, timestep: float) -> float:
         """Largest part of an activation that may lie between two angles of `activation`, or two steps of this time, s.
 
-        Where stimulation bends or jumps between two samples, no more of it is missed than the bend for half the time
-        between them; activation follows it by its share of the faster time constant.
+        Where stimulation bends or jumps between two samples, no more of it is missed than the bend over a cell and a
+        step for half the time that both take; activation follows it by its share of the faster time constant.
         """
         asked = self._asked
         bend = np.abs(np.roll(asked, 1, axis=-1) - 2 * asked + np.roll(asked, -1, axis=-1)).max()
-        between = self._turn[1] / self.cadence + timestep
-        return float(bend * between / 2 / self.leg.rise)
-
-    @cached_property
-    def _turn(self) -> FloatArray:
-        points = _FINE_BY_JOINT if self.stimulated.windows is None else _FINE
-        return np.arange(points) * (2 * np.pi / points)
+        cell = _FINE_TURN[1] / self.cadence
+        return float(bend * (1 + timestep / cell) * (cell + timestep) / 2 / self.leg.rise)
 
     @cached_property
     def _asked(self) -> FloatArray:
         """Stimulation as it arrives, over the fine turn, shape (groups, angles)."""
         cadence, windows, riders = np.full((1, 1), self.cadence), self.stimulated.windows, self.riders
         if windows is None:
-            return stimulated_by_joint(riders, self.design, self.cadence, self._turn)[:, 0, 0]
-        return windows.at(self._turn - cadence * riders["delay_s"], cadence * ramp())[:, 0, 0]
+            return stimulated_by_joint(riders, self.design, self.cadence, _FINE_TURN)[:, 0, 0]
+        return windows.at(_FINE_TURN - cadence * riders["delay_s"], cadence * ramp())[:, 0, 0]
 
     @cached_property
     def _answer(self) -> FloatArray:

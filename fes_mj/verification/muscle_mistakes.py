@@ -8,7 +8,6 @@ from typing import Any, cast
 
 from fes_mj.common.machine_code import in_lists
 from fes_mj.crosscheck.pipeline import Pipeline
-from fes_mj.linkage.torque_source import LegControl
 from fes_mj.linkage.turning import turning
 from fes_mj.muscles.anatomy import GROUPS, anatomy
 from fes_mj.muscles.drive import Muscles
@@ -76,18 +75,6 @@ def at_rates(factor_knee: float, factor_hip: float) -> Callable[..., tuple[float
     return moments
 
 
-def late(torque: MuscleTorque, leg: Any, timestep: float) -> LegControl:
-    """The moment of every state a step later."""
-    control = MuscleTorque.control(torque, leg, timestep)
-    before: list[tuple[float, float]] = []
-
-    def moments(*state: float) -> tuple[float, float]:
-        before.append(control.moments(*state))
-        return before.pop(0) if len(before) > 1 else before[0]
-
-    return replace(control, moments=moments)
-
-
 def unscaled(torque: MuscleTorque) -> LegMuscles:
     muscles, right = anatomy(), LegMuscles.of(torque.riders, torque.design.rider)
     return in_lists(right._replace(force=right.force / muscles.length_scale(torque.design.rider).ravel()))
@@ -123,6 +110,5 @@ MUSCLE_STEPS: dict[str, Steps] = {
     "slack_shift_reversed": in_rider(**{f"{group}_fibre_shift": -1.0 for group in GROUPS}),
     "length_scale_forgotten": in_muscles(leg=property(unscaled)),
     "windows_from_top": in_stimulus(from_top),
-    "moments_a_step_late": in_muscles(control=late),
     "left_muscles_unshifted": in_muscles(stimulator=unshifted),
 }

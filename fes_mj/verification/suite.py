@@ -11,6 +11,7 @@ from fes_mj.common.errors import UnstableError
 from fes_mj.common.units import turns_per_second
 from fes_mj.linkage.assembly import joint_ranges
 from fes_mj.moments.joint_moments import JointMoments
+from fes_mj.muscles.drive import Muscles
 from fes_mj.simulation.mjcf import SERVO_GAIN
 from fes_mj.verification.case import VerificationCase
 from fes_mj.verification.geometry import file_checks, geometry_checks
@@ -46,7 +47,9 @@ def two_leg_checks(case: VerificationCase) -> Iterator[Check]:
 
 
 def refinement_checks(case: VerificationCase) -> Iterator[Check]:
-    """Orders, floor, uncertainty and what is left at a step of zero."""
+    """Orders, floor, uncertainty and what is left at a step of zero, where errors are of second order in the step."""
+    if isinstance(case.drive, Muscles) and case.drive.jumps:
+        return
     result = case.refinement
     yield case.check("gap_order", abs(result.gap_order - 2))
     yield case.check("power_order", abs(result.power_order - 2))

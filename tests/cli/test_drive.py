@@ -2,6 +2,7 @@
 
 import pytest
 
+from fes_mj.linkage.design_file import design_toml, load_design
 from fes_mj.muscles.riders import load_riders
 from tests.cli.conftest import answer, result
 
@@ -24,6 +25,34 @@ def test_static_of_muscles_has_the_promised_keys(capsys):
     assert content["crank_angle_deg"] == list(range(360))
     work = sum(content["crank_moment_Nm"]) / 360 * content["cadence_rpm"] * 3.141592653589793 / 30
     assert work == pytest.approx(content["power_mean_W"])
+
+
+def test_simulate_runs_the_most_probable_rider(capsys, tmp_path):
+    code, content = answer(capsys, "simulate", "trt", *MUSCLES, "--timing", "measured", "-o", str(tmp_path))
+    assert (code, content["agrees"], content["timing"]) == (0, True, "measured")
+    assert content["power_mean_W"] == pytest.approx(content["static_power_mean_W"], rel=5e-4)
+    assert content["static_power_mean_W"] == pytest.approx(content["power_mode_W"], rel=1e-3)
+    names = {check["name"] for check in content["checks"]}
+    assert {"muscle_moments", "muscle_activation", "mujoco_inverse"} <= names
+    assert "torque_map" not in names
+    names = {file.name for file in tmp_path.iterdir()}
+    assert {f"trt-p1p2-muscles-measured.{kind}" for kind in ("csv", "json", "xml")} <= names
+
+
+def test_validate_of_muscles_by_angle_checks_their_map(capsys):
+    code, content = answer(capsys, "validate", "r1", *MUSCLES, "--timing", "by-angle", "--group", "p1p3", "--quick")
+    assert (code, content["ok"]) == (0, True)
+    assert {"torque_map", "map_feedback"} <= {check["name"] for check in content["checks"]}
+    assert (content["runs"][0]["drive"], content["runs"][0]["timing"]) == ("muscles", "by-angle")
+
+
+@pytest.mark.parametrize("command", ["simulate", "validate"])
+def test_a_seat_beyond_the_lengths_is_refused_by_joint(capsys, command, tmp_path):
+    design = load_design("trt")
+    (tmp_path / "near.toml").write_text(design_toml(design.with_linkage(ground=0.8 * design.linkage.ground)))
+    code, out, err = result(capsys, command, str(tmp_path / "near.toml"), *MUSCLES)
+    assert (code, out) == (2, "")
+    assert "muscle lengths are known from" in err
 
 
 def test_designs_are_compared_and_text_names_the_windows(capsys):

@@ -84,6 +84,7 @@ def test_a_muscle_is_hills_at_its_ends():
     assert pulled(2.1, 0.0) == pulled(3.0, 0.0) == 0
 
 
+@pytest.mark.long
 def test_machine_code_says_the_same(riders):
     leg, stimulus = LegMuscles.of(riders.taken([6]), load_design("r1").rider), Stimulus(*np.ones((2, 3)), 0.4)
     state, active = (1.8, 1.5, -2.0, 1.0), np.array([0.2, 0.9, 0.4])
