@@ -16,6 +16,7 @@ from fes_mj.common.units import KMH, RPM
 from fes_mj.crosscheck.ride_case import RideCase
 from fes_mj.crosscheck.turn_case import Case
 from fes_mj.linkage.design import Design
+from fes_mj.muscles.drive import Muscles
 from fes_mj.riding.verdict import verdict as what_became
 from fes_mj.viewing.charts import any_letters, plot_power
 
@@ -85,7 +86,8 @@ def _draw_power(figure: Figure, case: Case) -> Axes:
     axes.axhline(mean, color=COLOURS["mujoco"], lw=1, ls=":", label=f"mean of MuJoCo, {mean:.1f} W")
     axes.legend(loc="lower left", bbox_to_anchor=(-0.02, 1.0), fontsize=11)
     legs = "one leg" if len(run.legs) == 1 else "two legs"
-    write_title(figure, run.design, f"{run.drive.driver}, {run.cadence / RPM:.1f} rpm, {legs}")
+    drive = run.drive.driver if isinstance(run.drive, Muscles) else f"joint moments {run.drive.name.upper()}"
+    write_title(figure, run.design, f"{drive}, {run.cadence / RPM:.1f} rpm, {legs}")
     facts = (
         ("mean power, MuJoCo", f"{run.power_mean:.3f} W a leg", COLOURS["mujoco"]),
         ("mean power, quasi-static", f"{case.statics.power_mean:.3f} W a leg", COLOURS["quasi-static"]),
