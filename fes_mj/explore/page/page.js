@@ -223,19 +223,19 @@ function showNumbers() {
   sliders.mark(marks);
   const why = state.muscles?.why;
   $("note").textContent = [own?.note && `Note: ${own.note}.`, why && `Muscles: ${why}.`].filter(Boolean).join(" ");
-  headline(own && { ...own, compared_W: other?.power_mean_W });
+  headline(own, other);
 }
 
-// The power of one leg under what drives, beside that of the design it is compared with.
-function headline(byMoments) {
-  const result = state.drive === "muscles" ? byMoments && state.muscles : byMoments;
-  if (byMoments && !result) $("power").textContent = "…";
+// The power of one leg under what drives, beside that of the design it is compared with; given: both by moments.
+function headline(own, compared) {
+  const muscles = state.drive === "muscles", result = muscles ? own && state.muscles : own;
+  if (own && !result) $("power").textContent = "…";
   else $("power").textContent = result?.numbers ? `${result.numbers[0].text} W` : "no power";
-  const power = result?.power_mean_W, other = result ? result.compared_W : state.reference.turn.moments?.[state.moments]?.power_mean_W;
+  const power = result?.power_mean_W, other = muscles ? state.muscles?.compared_W : compared?.power_mean_W;
   const change = (100 * (power - other)) / Math.abs(other);
   const percent = Number.isFinite(change) && Math.abs(change) >= 0.05 ? `, ${change < 0 ? "−" : "+"}${Math.abs(change).toFixed(1)} %` : "";
   $("against").textContent = [
-    state.drive === "muscles" && "by muscles",
+    muscles && "by muscles",
     Number.isFinite(other) && `${state.reference.name}: ${other.toFixed(2)} W${percent}`,
   ].filter(Boolean).join("; ");
 }
