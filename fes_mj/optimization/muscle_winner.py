@@ -87,6 +87,7 @@ class MuscleWinner:
         turn, (mean, deviation, share) = self.turn.summary(), self.gain
         keys = ("group", "drive", "timing", "power_mean_W", "power_sd_W", "work_per_turn_J", "cadence_rpm",
                 "windows_deg", "duty", "power_two_legs_min_W", "negative_share")  # fmt: skip
+        people = {"power_people_W": optimum.power, "riders": optimum.riders} if optimum.problem.people.count > 1 else {}
         return {
             "kind": self.design.linkage.kind,
             "method": optimum.method,
@@ -104,4 +105,5 @@ class MuscleWinner:
             **asdict(self.build),
             "doubts": self.doubts(optimum),
             "repair": optimum.repair or None,
+            **people,
         }

@@ -90,8 +90,15 @@ class Optimum(Brief):
     @property
     def riders(self) -> list[dict[str, float]]:
         """Whom the design was made for, the rider of its file first: legs and seat, and the power in it."""
-        designs = self.problem.riders(self.x)
+        designs, muscles = self.problem.riders(self.x), self.problem.muscles
         ground = designs[0].linkage.ground
+
+        def power(design: Design) -> float:
+            if muscles:
+                return float(muscles.power(design)[0])
+            work = float(cycles(design, self.problem.table).work[0, 0])
+            return work * float(turns_per_second(design.linkage.cadence))
+
         return [
             {
                 "thigh": design.rider.thigh,
@@ -99,8 +106,7 @@ class Optimum(Brief):
                 "forward_m": (design.linkage.ground - ground).real,
                 "up_m": (ground - design.linkage.ground).imag,
                 "seat_angle_deg": math.degrees(design.linkage.seat_angle),
-                "power_mean_W": float(cycles(design, self.problem.table).work[0, 0])
-                * turns_per_second(design.linkage.cadence),
+                "power_mean_W": power(design),
             }
             for design in designs
         ]

@@ -11,6 +11,8 @@ from fes_mj.muscles.geometry import Flexion
 from fes_mj.muscles.power import best_power
 from fes_mj.muscles.riders import load_riders
 from fes_mj.muscles.rules import BEST
+from fes_mj.optimization.optimize import Optimum
+from fes_mj.optimization.people import sampled
 from fes_mj.optimization.problem import make_problem
 from fes_mj.optimization.stimulated import SEARCHED, MuscleDrive
 from fes_mj.statics.cycles import cycles
@@ -73,3 +75,11 @@ def test_a_search_for_muscles_beats_its_start() -> None:
     assert optimum.power > best_power(one.riders, TRT)[0]
     with pytest.raises(fes_mj.InputError, match="caution"):
         make_problem("trt", MOMENTS, caution=1.0, muscles=one)
+
+
+def test_for_people_each_has_the_power_of_muscles() -> None:
+    one, people = MuscleDrive(DRIVE.riders.most_probable), sampled("population", 50, 0)
+    problem = make_problem("trt", MOMENTS, muscles=one, people=people)
+    optimum = Optimum(problem, "none", "own", problem.variables(TRT), 1)
+    expected = [best_power(one.riders, design)[0] for design in problem.riders(optimum.x)]
+    assert [rider["power_mean_W"] for rider in optimum.riders] == pytest.approx(expected, rel=1e-5)
