@@ -12,9 +12,9 @@ from fes_mj.statics.cycles import Cycles, cycles
 from fes_mj.statics.work_table import WorkTable
 
 # A seat is better than another first by the range of the moments, then by power, then by the way: what differs by less
-# than 0.1 deg and 0.01 W counts as equal, and here 2 % less, by which the best that a search knows may be off. A degree
-# of which nothing is known is worth no power.
-OUTSIDE_EQUAL, POWER_EQUAL = 0.0999, 0.0098  # deg, W
+# than 0.1 deg and 0.01 W counts as equal, and here a little less, by which the best that a search knows may be off. A
+# degree of which nothing is known is worth no power.
+OUTSIDE_EQUAL, POWER_EQUAL = 0.0999, 0.0095  # deg, W
 _BACK = 0.5  # m, of a backrest: what a change of its angle counts as
 _NO_TURN = 1e4  # deg, more than joints can be outside: where the linkage does not turn
 _WORSE = 1e5  # W or deg, more than any power or angle

@@ -11,30 +11,32 @@ from fes_mj.statics.work_table import WorkTable
 
 TABLES = {group: WorkTable.of(fes_mj.load_moments(group)) for group in ("p1p2", "p1p3")}
 OUTSIDE_EQUAL, POWER_EQUAL = 0.1, 0.01  # deg, W: what counts as equal
-FINE, CLOUD, ROUNDS, SHRINK = (36, 31, 41), 400, 12, 0.75
+FINE, CLOUD, ROUNDS, SHRINK = (36, 31, 41), 400, 24, 0.85
 SHORTER = 0.002  # m, by which a way may be shorter that the search has not found
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("case", range(50))
+@pytest.mark.parametrize("case", range(17))
 def test_no_seat_of_a_fine_grid_is_better(case: int) -> None:
-    """Random riders; designs of the paper, from the tenth case on with another crank and foot."""
+    """51 random riders; designs of the paper, from the sixth case on with another crank and foot."""
     random = np.random.default_rng(100 + case)
     design, table = fes_mj.load_design(DESIGNS[case % 5]), TABLES[str(random.choice([*TABLES]))]
-    if case >= 10:
+    if case >= 5:
         linkage = design.linkage
         crank, foot = linkage.crank * random.uniform(0.8, 1.05), linkage.foot + random.uniform(-0.02, 0.02)
         design = design.with_linkage(crank=crank, foot=foot)
-    thigh, shank = random.uniform(0.36, 0.54), random.uniform(0.44, 0.58)
-    seats, found = best_seats(design, [thigh], [shank], table)
-    known = _tried(design.with_rider(thigh=thigh, shank=shank), table, random)
-    known = Scores(*(np.concatenate(columns) for columns in zip(known, found, strict=True)))
-    within = known.outside <= known.outside.min() + OUTSIDE_EQUAL
-    strong = within & (known.power >= known.power[within].max() - POWER_EQUAL)
-    assert found.outside[0] <= known.outside.min() + OUTSIDE_EQUAL
-    assert found.power[0] >= known.power[within].max() - POWER_EQUAL
-    assert found.distance[0] <= known.distance[strong].min() + SHORTER
-    assert found.distance[0] == Seats(*(float(move[0]) for move in seats)).distance
+    thigh, shank = random.uniform(0.36, 0.54, 3), random.uniform(0.44, 0.58, 3)
+    seats, found = best_seats(design, thigh, shank, table)
+    assert found.distance == pytest.approx(seats.distance)
+    for rider, best in enumerate(zip(*found, strict=True)):
+        tried = _tried(design.with_rider(thigh=thigh[rider], shank=shank[rider]), table, random)
+        known = Scores(*(np.append(column, value) for column, value in zip(tried, best, strict=True)))
+        outside, power, distance = best
+        within = known.outside <= known.outside.min() + OUTSIDE_EQUAL
+        strong = within & (known.power >= known.power[within].max() - POWER_EQUAL)
+        assert outside <= known.outside.min() + OUTSIDE_EQUAL
+        assert power >= known.power[within].max() - POWER_EQUAL
+        assert distance <= known.distance[strong].min() + SHORTER
 
 
 def _tried(design: fes_mj.Design, table: WorkTable, random: np.random.Generator) -> Scores:
@@ -47,7 +49,7 @@ def _tried(design: fes_mj.Design, table: WorkTable, random: np.random.Generator)
         within = known.outside <= known.outside.min() + OUTSIDE_EQUAL
         power = np.where(within, known.power, -1e9)
         ways = [np.where(power >= power.max() - slack, known.distance, 1.0) for slack in (POWER_EQUAL, 0.1)]
-        centres = [known.outside.argmin(), power.argmax(), ways[0].argmin(), *np.argsort(ways[1])[:5]]
+        centres = [known.outside.argmin(), *np.argsort(power)[-4:], ways[0].argmin(), *np.argsort(ways[1])[:5]]
         cloud = np.vstack([seats[centre] + width * random.standard_normal((CLOUD, 3)) for centre in centres])
         more = _scores(design, cloud := np.clip(cloud, low, high), table)
         seats, width = np.vstack([seats, cloud]), SHRINK * width
