@@ -1,8 +1,11 @@
 """Videos of a cross-check: legs and linkage beside the crank power, or the tricycle on its road beside its speed."""
 
 import math
+import signal
 import subprocess
+import sys
 from collections.abc import Iterable, Iterator
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
 import mujoco
@@ -99,16 +102,32 @@ def write_video(path: Path, frames: Iterable[Picture], count: int, quiet: bool =
         temporary_beside(path) as once,
     ):
         try:
-            with mediapy.VideoWriter(once, shape, **look) as writer:
+            with ExitStack() as writing:
+                with _held_signals():
+                    writer = writing.enter_context(mediapy.VideoWriter(once, shape, **look))
                 for frame in frames:
                     writer.add_image(frame)
                     advance(1)
             copy = ["-v", "error", "-y", "-stream_loop", str(repeats - 1), "-i", str(once), "-c", "copy", str(beside)]
-            subprocess.run([encoder.get_ffmpeg_exe(), *copy], check=True, capture_output=True, text=True)
+            with _held_signals():
+                subprocess.run([encoder.get_ffmpeg_exe(), *copy], check=True, capture_output=True, text=True)
         except (RuntimeError, BrokenPipeError, subprocess.CalledProcessError) as error:  # with words or without
             message = error.stderr if isinstance(error, subprocess.CalledProcessError) else str(error)
             reason = message.strip().rpartition("] ")[2].strip()
             raise InputError(f"{path}: cannot be written: the encoder stopped: {reason}") from None
+
+
+@contextmanager
+def _held_signals() -> Iterator[None]:
+    """Keep signals that end the run waiting: one that comes while the encoder starts would leave it running alone."""
+    if sys.platform == "win32":
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGTERM, signal.SIGHUP})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _ride_pictures(case: RideCase, steps: IntArray, end: float) -> Iterator[Picture]:
