@@ -85,7 +85,7 @@ def gains(tables: Mapping[str, Rows]) -> Figure:
                 ends = [row[f"gain {end} %"] for end in (5, 50, 95)]
                 label = row["timing"] if row["design"] == NAMES[0] else None
                 interval(axes, place, ends, color=colours[rule], label=label)
-        axes.set_title(title, loc="left", size=9)
+        axes.set_title(f"{title}, riders P1P2", loc="left", size=9)
         unity(axes, "power per the TRT's, 5 to 95 % of the riders")
     panels[0].set_yticks(range(len(NAMES)), NAMES)
     panels[0].invert_yaxis()
@@ -115,7 +115,7 @@ def windows() -> Figure:
         axes.set(xlim=(0, 360), xticks=range(0, 361, 60), xlabel="crank angle, deg (0: crank backwards)")
         axes.legend(loc="lower left", bbox_to_anchor=(0, 1.0), ncols=3)
     power.axhline(0, color=INK, lw=0.8)
-    power.set_ylabel("expected power of both legs, W")
+    power.set_ylabel("expected power of both legs, W; riders P1P2")
     return figure
 
 
@@ -131,7 +131,7 @@ def over_time(cadences: Rows) -> Figure:
         )  # fmt: skip
     by_cadence.axhspan(*MEASURED_W, color=FAINT, alpha=0.15, lw=0)
     by_cadence.text(21, MEASURED_W[0] + 1, "measured FES cycling", size=8, color=FAINT)
-    by_cadence.set(xlabel="cadence, rpm", ylabel="expected power of both legs, W", ylim=(0, None))
+    by_cadence.set(xlabel="cadence, rpm", ylabel="expected power of both legs, W; riders P1P2", ylim=(0, None))
     by_cadence.legend(loc="lower left", bbox_to_anchor=(0, 1.0), ncols=5)
     riders, trt = load_riders("p1p2"), load_design("trt")
     for width, colour in zip(WIDTHS, SERIES, strict=True):
