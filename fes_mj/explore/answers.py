@@ -23,10 +23,12 @@ from fes_mj.linkage.riders import populations
 from fes_mj.linkage.turning import turning
 from fes_mj.moments.files import load_moments
 from fes_mj.moments.joint_moments import GROUPS, JointMoments
+from fes_mj.muscles.drive import Muscles, load_muscles
 from fes_mj.optimization.limits import load_limits
 from fes_mj.riding.ride import TRANSMISSIONS
 from fes_mj.simulation.export import mjcf_text
 from fes_mj.simulation.mjcf import build_mjcf
+from fes_mj.statics.drive import Drive
 
 Answer = dict[str, Any]
 DRIVES = ("moments", "muscles")
@@ -125,12 +127,9 @@ class Answers:
 
     def run(self, name: str, question: Section) -> Callable[[Path], Answer]:
         """What runs.RUNS is asked, with all that it needs, but for its folder. Raises InputError, and KeyError."""
-        design, known = _design(question), self._moments(question)
-        drive = question.choice("drive", DRIVES, DRIVES[0])
-        if drive == "muscles" and name not in BY_MUSCLES:
-            raise InputError("muscles do not drive this yet; choose joint moments")
-        if drive == "muscles":
-            require_muscles(question.choice("moments", known))
+        design, drive = _design(question), self._drive(question)
+        if isinstance(drive, Muscles) and name not in BY_MUSCLES:
+            raise InputError("muscles do not drive this; choose joint moments")
         if name != "fit":  # which may find a seat with which it turns
             turning(design)
         options: Mapping[str, Callable[[], Answer]] = {
@@ -139,10 +138,17 @@ class Answers:
                 "transmission": question.choice("transmission", TRANSMISSIONS, TRANSMISSIONS[0]),
                 "slope": question.value("slope", 0.0, _is_slope, f"a slope from -{STEEPEST:g} to {STEEPEST:g} %"),
             },
-            "optimise": lambda: {"drive": drive},
         }
-        own = options.get(name, dict)()
-        return partial(RUNS[name], design, known[question.choice("moments", known)], **own)
+        return partial(RUNS[name], design, drive, **options.get(name, dict)())
+
+    def _drive(self, question: Section) -> Drive:
+        """What drives: the moments that are asked for, or the muscles of the same riders."""
+        known = self._moments(question)
+        moments = known[question.choice("moments", known)]
+        if question.choice("drive", DRIVES, DRIVES[0]) == "moments":
+            return moments
+        require_muscles(moments.name)
+        return load_muscles(moments.name)
 
     def _moments(self, question: Section) -> dict[str, JointMoments]:
         return self.shared | self.uploads.of(_page(question))

@@ -17,26 +17,29 @@ from fes_mj.explore.dimensions import content_of
 from fes_mj.fit.seat import fit_seat, seat_text
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.design_file import design_toml
+from fes_mj.moments.files import load_moments
 from fes_mj.moments.joint_moments import JointMoments
-from fes_mj.muscles.riders import load_riders
-from fes_mj.muscles.timing import DUTY
+from fes_mj.muscles.drive import Muscles
 from fes_mj.optimization.findings import Findings
 from fes_mj.optimization.optimize import optimize
 from fes_mj.optimization.stimulated import MuscleDrive
 from fes_mj.riding.ride import Ride, Road
+from fes_mj.statics.drive import Drive
 from fes_mj.verification.case import VerificationCase
 from fes_mj.verification.suite import quick_groups, verify
 
 SEARCHES = 4
 
 
-def simulate(design: Design, moments: JointMoments, state: Path, *, legs: int) -> dict[str, Any]:
+def simulate(design: Design, drive: Drive, state: Path, *, legs: int) -> dict[str, Any]:
     """As `fes_mj simulate`: the verdict in a sentence, and every check. Raises what Case raises."""
-    one_leg = VerificationCase(design, moments)
+    one_leg = VerificationCase(design, drive)
     case = one_leg if legs == 1 else one_leg.two_legs
     power = (
         f"mean power {case.simulation.power_mean:.2f} W against {case.statics.power_mean:.2f} W, {case.difference_text}"
     )
+    if isinstance(drive, Muscles):
+        power += f", by the muscles of the most probable rider of {drive.riders.name}"
     return _checked("Dynamic and static", power, [*verify(one_leg, quick_groups(legs))])
 
 
@@ -56,9 +59,10 @@ def fit(design: Design, moments: JointMoments, state: Path) -> dict[str, Any]:
     return {"ok": True, "verdict": typeset(verdict), "design": content_of(result.design)}
 
 
-def optimise(design: Design, moments: JointMoments, state: Path, *, drive: str) -> dict[str, Any]:
+def optimise(design: Design, drive: Drive, state: Path) -> dict[str, Any]:
     """As `fes_mj optimize --start DESIGN --speeds-of DESIGN`: the best of its kind that moves the joints no faster."""
-    muscles = MuscleDrive(load_riders(moments.name), DUTY) if drive == "muscles" else None
+    muscles = MuscleDrive(drive.riders, drive.duty) if isinstance(drive, Muscles) else None
+    moments = load_moments(drive.riders.name) if isinstance(drive, Muscles) else drive
     start = str(state / "start.toml")
     write_text(Path(start), design_toml(design))
     kind, findings = design.linkage.kind, _findings(state)
@@ -71,7 +75,7 @@ def optimise(design: Design, moments: JointMoments, state: Path, *, drive: str) 
     return {"ok": True, "verdict": verdict, "design": content_of(optimum.design) | {"name": f"{design.name}-optimised"}}
 
 
-BY_MUSCLES = {"optimise"}  # all others know joint moments alone
+BY_MUSCLES = {"simulate", "optimise"}  # the others know joint moments alone
 RUNS: dict[str, Callable[..., dict[str, Any]]] = {run.__name__: run for run in (simulate, ride, fit, optimise)}
 
 

@@ -13,6 +13,7 @@ from fes_mj.explore import runs
 from fes_mj.explore.dimensions import design_of
 from fes_mj.fit.seat import fit_seat, seat_text
 from fes_mj.linkage.design import Rider
+from fes_mj.muscles.drive import load_muscles
 from fes_mj.muscles.riders import load_riders
 from fes_mj.muscles.timing import DUTY
 from fes_mj.optimization.problem import make_problem
@@ -29,6 +30,14 @@ def test_simulate(tmp_path: Path) -> None:
     assert f"mean power {case.simulation.power_mean:.2f} W" in run["verdict"]
     assert {check.name.replace("_", " ") for check in case.checks} < {row["name"] for row in run["checks"]}
     assert all(row["ok"] for row in run["checks"])
+
+
+def test_simulate_by_muscles(tmp_path: Path) -> None:
+    case = fes_mj.Case(D1, load_muscles("p1p2"))
+    run = runs.simulate(D1, load_muscles("p1p2"), tmp_path, legs=1)
+    assert run["ok"]
+    assert f"mean power {case.simulation.power_mean:.2f} W" in run["verdict"]
+    assert run["verdict"].endswith("by the muscles of the most probable rider of p1p2.")
 
 
 def test_a_check_that_fails_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -65,7 +74,7 @@ def test_optimise(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert runs.progress(tmp_path) is None
     monkeypatch.setattr(runs, "optimize", partial(fes_mj.optimize, budget=300))
     r1 = fes_mj.load_design("r1")
-    run = runs.optimise(r1, P1P2, tmp_path, drive="moments")
+    run = runs.optimise(r1, P1P2, tmp_path)
     best, problem = design_of(run["design"]), make_problem("crt", P1P2, start="r1", compared_with="r1")
     evaluation = problem.evaluate(problem.variables(best)[None])
     assert evaluation.feasible.all()
@@ -77,7 +86,7 @@ def test_optimise(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 def test_optimise_for_muscles(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(runs, "optimize", partial(fes_mj.optimize, budget=12))
     monkeypatch.setattr(runs, "SEARCHES", 1)
-    run = runs.optimise(fes_mj.load_design("r1"), P1P2, tmp_path, drive="muscles")
+    run = runs.optimise(fes_mj.load_design("r1"), load_muscles("p1p2"), tmp_path)
     best, muscles = design_of(run["design"]), MuscleDrive(load_riders("p1p2"), DUTY)
     problem = make_problem("crt", P1P2, start="r1", compared_with="r1", muscles=muscles)
     evaluation = problem.evaluate(problem.variables(best)[None])
