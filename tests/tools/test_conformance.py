@@ -36,7 +36,7 @@ def everything(tmp_path_factory: pytest.TempPathFactory) -> Asked:
 
 
 # MJX compiles every motion of every design, half a minute each; `make readers` asks it about all.
-COMPILED = {"mjx": ("trt", "d1")}
+COMPILED = {"mjx": ("d1",)}
 
 
 @pytest.mark.long

@@ -1,4 +1,4 @@
-"""900 linkages of any shape, any seat and coupler angle: which turn, and what they deliver, by a second statics."""
+"""300 linkages of any shape, any seat and coupler angle: which turn, and what they deliver, by a second statics."""
 
 import math
 
@@ -35,13 +35,13 @@ def any_linkage(rng: np.random.Generator) -> Design:
 
 
 @pytest.mark.long
-def test_900_linkages() -> None:
+def test_300_linkages() -> None:
     rng, seen = np.random.default_rng(7), {"turns": 0, "does not turn": 0, "never enters": 0}
-    while sum(seen.values()) < 900:
+    while sum(seen.values()) < 300:
         design = random_design(rng) if rng.random() < 0.4 else any_linkage(rng)
         moments = random_moments(rng) if rng.random() < 0.5 else fes_mj.load_moments()
         seen[_verdict(design, moments)] += 1
-    assert min(seen.values()) > 50, seen
+    assert min(seen.values()) > 15, seen
 
 
 def _verdict(design: Design, moments: JointMoments) -> str:
