@@ -18,13 +18,13 @@ def trapezium(since_on: Any, width: Any, ramp: Any) -> FloatArray:
     return np.asarray(np.clip(np.minimum(passed, width - passed) / ramp, 0.0, 1.0))
 
 
-def answer(stimulation: FloatArray, turn: Any, rise: Any, fall: Any) -> FloatArray:
+def answer(stimulation: FloatArray, turn: Any, rise: Any, fall: Any, start: Any = 0.0) -> FloatArray:
     """Activation over a turn under a stimulation that repeats, both over uniform crank angles, the last axis.
 
     Activation goes to the stimulation with the time constant `rise` from below and `fall`, which is not shorter, from
     above: always as the constant says that leaves it the higher. Exact over each step for a stimulation that is linear
     between the angles, but for the one in which they cross. turn, rise, fall: s, of the stimulation's shape but for the
-    last axis.
+    last axis. start: activation at the first angle, as well as it is known; it saves turns.
     """
     here = np.ascontiguousarray(np.moveaxis(np.atleast_2d(stimulation), -1, 0))
     rise, fall, _ = np.broadcast_arrays(rise, fall, here[0])
@@ -35,6 +35,7 @@ def answer(stimulation: FloatArray, turn: Any, rise: Any, fall: Any) -> FloatArr
     added = here[:, None] * (share * (1 - kept) - kept)
     added += np.roll(here, -1, axis=0)[:, None] * (1 - share * (1 - kept))
     result, both = np.zeros((len(here) + 1, *here.shape[1:]), here.dtype), np.empty_like(kept)
+    result[0] = start
     while True:
         for change, now, then in zip(added, result, result[1:], strict=False):
             np.multiply(kept, now, out=both)

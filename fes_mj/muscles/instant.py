@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from fes_mj.common.arrays import FloatArray, IntArray
+from fes_mj.common.arrays import BoolArray, FloatArray, IntArray
 from fes_mj.linkage.design import Rider
 from fes_mj.muscles.anatomy import anatomy
 from fes_mj.muscles.contraction import CURVATURE, LENGTHENING, PLATEAU, WIDTH
@@ -22,16 +22,18 @@ from fes_mj.muscles.timing import Windows
 class LegMuscles(NamedTuple):
     """The muscles of one rider's leg; arrays by muscle, shape (muscles,).
 
-    group: number in GROUPS. lengths: m, coefficients by powers of knee, then hip flexion from `straight`, shape
-    (muscles, powers, powers); knee_power, hip_power: the largest that a muscle has. straight: knee and hip angle from
+    group: number in GROUPS. lengths: m, coefficients by powers of hip, then knee flexion from `straight` where
+    knee_inside, elsewhere of knee, then hip, shape (muscles, powers, powers); rows: how many there are, and orders, how
+    many each has, shape (muscles, powers). straight: knee and hip angle from
     which flexion counts there, rad. force: N, of the rider's muscles, times how much longer these are than the
     lengths say. optimal, slack: m. thickness: m, of the fibres. max_speed: m/s. rise, fall, delay: s.
     """
 
     group: IntArray
+    knee_inside: BoolArray
     lengths: FloatArray
-    knee_power: IntArray
-    hip_power: IntArray
+    orders: IntArray
+    rows: IntArray
     straight: FloatArray
     force: FloatArray
     optimal: FloatArray
@@ -51,13 +53,17 @@ class LegMuscles(NamedTuple):
         for (hip, knee), column in zip(powers, muscles.lengths.coefficients.T, strict=True):
             lengths[:, knee, hip] = column
         used = lengths != 0
+        knee_inside = ~used[:, :, 1:].any(axis=(1, 2))  # of muscles that do not pass the hip, so that all is in one row
+        lengths[knee_inside] = np.swapaxes(lengths[knee_inside], 1, 2)
+        used = lengths != 0
         scale = muscles.length_scale(rider).ravel()
         offset = np.array([0.0, np.radians(value["hip_offset_deg"])])
         return cls(
             group=muscles.group,
+            knee_inside=knee_inside,
             lengths=lengths,
-            knee_power=_largest(used.any(axis=2)),
-            hip_power=_largest(used.any(axis=1)),
+            orders=_count(used),
+            rows=_count(used.any(axis=2)),
             straight=np.pi + offset - CENTRE[::-1],
             force=muscles.force * member.strength(muscles).ravel() * scale,
             optimal=muscles.optimal,
@@ -70,9 +76,9 @@ class LegMuscles(NamedTuple):
         )
 
 
-def _largest(used: Any) -> IntArray:
-    """Largest power that is used, shape (muscles,), of flags by power."""
-    return np.asarray(used.shape[1] - 1 - used[:, ::-1].argmax(axis=1))
+def _count(used: BoolArray) -> IntArray:
+    """One more than the last place that is used along the last axis; 0 where none is."""
+    return np.asarray(np.where(used, np.arange(1, used.shape[-1] + 1), 0).max(axis=-1))
 
 
 class Stimulus(NamedTuple):
@@ -136,17 +142,19 @@ def joint_moments(
         if active <= 0:
             continue
         # Horner's rule for the polynomial and its derivatives, the moment arms
-        length = by_knee = by_hip = 0.0
-        rows, orders = leg.lengths[muscle], leg.hip_power[muscle] + 1
-        for power in range(leg.knee_power[muscle], -1, -1):
+        knee_inside, rows, orders = leg.knee_inside[muscle], leg.lengths[muscle], leg.orders[muscle]
+        inner, outer = (bent_knee, bent_hip) if knee_inside else (bent_hip, bent_knee)
+        length = by_outer = by_inner = 0.0
+        for power in range(leg.rows[muscle] - 1, -1, -1):
             value = slope = 0.0
             row = rows[power]
-            for order in range(min(orders, len(rows) - power) - 1, -1, -1):
-                slope = slope * bent_hip + value
-                value = value * bent_hip + row[order]
-            by_knee = by_knee * bent_knee + length
-            length = length * bent_knee + value
-            by_hip = by_hip * bent_knee + slope
+            for order in range(orders[power] - 1, -1, -1):
+                slope = slope * inner + value
+                value = value * inner + row[order]
+            by_outer = by_outer * outer + length
+            length = length * outer + value
+            by_inner = by_inner * outer + slope
+        by_knee, by_hip = (by_inner, by_outer) if knee_inside else (by_outer, by_inner)
         along, thickness, optimal = length - leg.slack[muscle], leg.thickness[muscle], leg.optimal[muscle]
         if along <= 0:
             continue

@@ -14,6 +14,7 @@ from fes_mj.linkage.kinematics import Motion
 from fes_mj.linkage.legs import Leg
 from fes_mj.linkage.torque_source import LegControl
 from fes_mj.moments.torque_map import scalar_source, source_parameters
+from fes_mj.muscles.activation import answer
 from fes_mj.muscles.anatomy import GROUPS
 from fes_mj.muscles.instant import LegMuscles, Stimulus, joint_moments, stimulation
 from fes_mj.muscles.prior import ramp
@@ -21,7 +22,6 @@ from fes_mj.muscles.pull import pull
 from fes_mj.muscles.riders import Riders
 from fes_mj.muscles.rules import LEADING, Stimulated, stimulated_by_joint
 from fes_mj.muscles.stepping import Memory, MuscleStepper, Stimulator, steady
-from fes_mj.muscles.timing import responded
 
 # Crank angles of a turn at which activation is known where a power curve is compared: what corners of windows hide in
 # between is then less than the error of the finest time step of a refinement.
@@ -83,8 +83,9 @@ class MuscleTorque:
 
     @cached_property
     def _answer(self) -> FloatArray:
-        asked = self._asked[:, None, None]
-        return responded(asked, self.riders, np.full((1, 1), self.cadence))[:, 0, 0]
+        turn, known = self.stimulated.turn, self.riders
+        start = 0.0 if turn is None else turn.activation[:, 0, 0, 0]
+        return answer(self._asked, 2 * np.pi / self.cadence, known["rise_s"].item(), known.fall.item(), start)
 
     @property
     def stimulus(self) -> Stimulus:

@@ -54,7 +54,7 @@ def test_fibres_do_the_work_that_joints_do(riders):
 
     def length(muscle, seconds):
         bent = leg.straight - np.array([knee, hip]) - seconds * rates
-        return np.polynomial.polynomial.polyval2d(*bent, leg.lengths[muscle])
+        return np.polynomial.polynomial.polyval2d(*bent[:: 1 - 2 * leg.knee_inside[muscle]], leg.lengths[muscle])
 
     power = 0.0
     for muscle in range(len(leg.group)):
@@ -69,11 +69,11 @@ def test_fibres_do_the_work_that_joints_do(riders):
 
 def test_a_muscle_is_hills_at_its_ends():
     """One muscle with a moment arm of 5 cm at the knee, at its optimal length, and slack."""
-    knee_alone = np.zeros((1, 2, 2))
-    knee_alone[0, :, 0] = 0.4, 0.05
+    knee_alone = np.array([[[0.4, 0.05]]])
     columns = np.ones((4, 1)) * [[100.0], [0.1], [0.3], [0.0]]
     one, none = np.ones(1, int), np.zeros(1, int)
-    leg = LegMuscles(none, knee_alone, one, none, np.zeros(2), *columns, np.array([0.8]), 0.1, 0.1, 0.0)
+    inside, orders = np.ones(1, bool), np.array([[2]])
+    leg = LegMuscles(none, inside, knee_alone, orders, one, np.zeros(2), *columns, np.array([0.8]), 0.1, 0.1, 0.0)
     leg = in_lists(leg)
 
     def pulled(knee, shortening):
