@@ -29,7 +29,7 @@ ROUNDS = 7  # of simulations
 
 
 def simulate() -> dict[str, float]:
-    """Time under muscles per time under moments: of the command, of its checks in a process that runs, of a long run."""
+    """Time under muscles per time under moments: of the command, of its checks in one process, of a longer run."""
     design = load_design("d1")
     # riders are read anew each time, as their best windows are kept
     drives: dict[str, Callable[[], Drive]] = {
