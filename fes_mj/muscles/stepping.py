@@ -10,7 +10,7 @@ from fes_mj.muscles.instant import LegMuscles, activated, weights
 # Crank, knee and hip angle, rad, speeds of knee and hip, rad/s -> stimulation of each group that the muscles are asked
 # for there and then.
 Stimulator: TypeAlias = Callable[[float, float, float, float, float], Sequence[float]]
-_SETTLED = 1e-9  # of an activation, by which a turn may end beside where it began
+_SETTLED = 1e-7  # of an activation, by which a turn may end beside where it began
 
 
 class Memory(NamedTuple):
