@@ -32,6 +32,7 @@ def test_simulate(tmp_path: Path) -> None:
     assert all(row["ok"] for row in run["checks"])
 
 
+@pytest.mark.long
 def test_simulate_by_muscles(tmp_path: Path) -> None:
     case = fes_mj.Case(D1, load_muscles("p1p2"))
     run = runs.simulate(D1, load_muscles("p1p2"), tmp_path, legs=1)
