@@ -116,8 +116,8 @@ def tried() -> Table:
     }
     note = (
         "Sizes: aluminium plates for the forces of riding and 1,500 N on the pedal, factor 2 against yielding; a dash "
-        "where nothing in stock bears them; `fes_mj draw` draws them. Rides: 60 s on the level from 5.71 km/h, moments that do not depend on "
-        f"speed. Seats: {SAMPLES} of each sex, the seat moved as by `fes_mj fit`."
+        "where nothing in stock bears them; `fes_mj draw` draws them. Rides: 60 s on the level from 5.71 km/h, moments "
+        f"that do not depend on speed. Seats: {SAMPLES} of each sex, the seat moved as by `fes_mj fit`."
     )
     return Table("Simulated, sized, ridden, fitted", columns, rows, note)
 
