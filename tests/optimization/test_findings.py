@@ -162,7 +162,7 @@ def test_kills_at_random_change_nothing(tmp_path: Path) -> None:
     undisturbed = subprocess.run([*command, "2"], cwd=quiet, check=True, capture_output=True)
     duration = time.monotonic() - begin
     kills, seen = 0, 0
-    while kills < 4:
+    while kills < 4 or not seen:
         mark, again = f"{tmp_path}-{kills}", [*command, at.choice("12")]
         with subprocess.Popen(
             again, cwd=killed, env=os.environ | {MARK: mark}, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
@@ -179,7 +179,6 @@ def test_kills_at_random_change_nothing(tmp_path: Path) -> None:
         if (best := killed / "best.toml").exists():
             seen += 1
             assert fes_mj.quasi_static(fes_mj.load_design(best), fes_mj.load_moments("p1p2")).power_mean > 0
-    assert seen
     resumed = subprocess.run([*command, "1"], cwd=killed, check=True, capture_output=True)
     assert resumed.stdout == undisturbed.stdout
     assert contents(killed) == contents(quiet)
