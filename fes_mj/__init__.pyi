@@ -19,6 +19,7 @@ from fes_mj.muscles.drive import Muscles as Muscles, load_muscles as load_muscle
 from fes_mj.optimization.optimize import optimize as optimize
 from fes_mj.riding.ride import Ride as Ride, Road as Road
 from fes_mj.riding.starts import starts as starts
+from fes_mj.riding.stimulated import stimulated_rider as stimulated_rider
 from fes_mj.riding.stimulation import stimulation as stimulation
 from fes_mj.riding.trace import ride as ride
 from fes_mj.simulation.bench import simulate as simulate

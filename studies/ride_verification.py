@@ -111,7 +111,7 @@ def paper_table(outcomes: Sequence[Outcome]) -> Table:
         rows.append(
             (
                 ride.design.name.upper(),
-                ride.moments.name,
+                ride.drive.name,
                 ride.transmission,
                 result["slope_percent"],
                 result["speed_kmh"],

@@ -56,7 +56,7 @@ class DriveOptions:
             )
         return load_riders(self.muscles or options.group or "p1p2")
 
-    def load_muscles(self, options: LoadOptions) -> Muscles:
+    def load_muscles(self, options: MomentsOptions) -> Muscles:
         """Whose muscles, and when they are stimulated. Raises InputError as load_riders."""
         return Muscles(self.load_riders(options), self.timing, self.duty)
 

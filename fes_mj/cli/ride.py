@@ -11,6 +11,7 @@ from cyclopts import Group, Parameter
 from cyclopts.validators import Number, mutually_exclusive
 
 import fes_mj
+from fes_mj.cli.drive import MusclesFirst
 from fes_mj.cli.options import DesignName, Dims, Flag, MomentsOptions, Out, PrintOptions
 from fes_mj.cli.tables import beside, conclude_checks, or_dash, print_checks, what_moves
 from fes_mj.common.console import print_table, say
@@ -19,7 +20,9 @@ from fes_mj.common.units import KMH, RPM
 from fes_mj.common.writing import json_text, require_results, require_writable, write_results
 from fes_mj.linkage.design import TRICYCLE_SPEED
 from fes_mj.linkage.design_file import load_design
+from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.riding.ride import Ride, Road
+from fes_mj.riding.stimulated import StimulatedRider, stimulated_rider
 
 if TYPE_CHECKING:
     from fes_mj.riding.starts import Starts
@@ -27,6 +30,7 @@ if TYPE_CHECKING:
 
 _BEGIN = Group("How the ride begins", validator=mutually_exclusive)
 _TRICYCLE = Group("Tricycle and road")
+NO_FALL = "Joint moments do not fall with speed, as muscles do: how fast it gets says nothing of a rider."
 
 
 @Parameter(name="*")
@@ -57,13 +61,18 @@ class RideOptions(PrintOptions, MomentsOptions):
     drag_area: Annotated[float, Parameter(group=_TRICYCLE, validator=Number(gte=0, lte=10))] = 0.4
     dims: Dims = "identified"
 
-    def load(self, name: str) -> Ride:
+    def load(self, name: str, drive: MusclesFirst) -> Ride:
         """Load everything the options name. Raises InputError for what cannot be used."""
-        design, moments = load_design(name, self.dims), self.load_moments(2)
+        design = load_design(name, self.dims)
+        moving: JointMoments | StimulatedRider
+        if drive.drive == "muscles":
+            moving = stimulated_rider(drive.load_muscles(self), design)
+        else:
+            moving = self.load_moments(2)
         launch = TRICYCLE_SPEED if self.launch is None else self.launch * KMH
         return Ride(
             design,
-            moments,
+            moving,
             Road(self.slope / 100, self.tricycle_mass, self.rolling_mass, self.crr, self.drag_area),
             transmission=self.transmission,
             launch=launch if self.from_rest is None else 0.0,
@@ -77,6 +86,7 @@ def ride(
     /,
     *,
     options: RideOptions = RideOptions(),
+    drive: MusclesFirst = MusclesFirst(),
     starts: Flag = False,
     out: Out | None = None,
     render: Path | None = None,
@@ -89,12 +99,12 @@ def ride(
             made if its parent exists.
         render: Write a video (.mp4) of the ride beside speed and crank power.
     """
-    loaded, inputs = options.load(design), options.inputs(design)
+    loaded, inputs = options.load(design, drive), options.inputs(design)
     require_writable(render, "the video", ".mp4", inputs)
     if out and starts:
         require_extra("video", "matplotlib")
     suffixes = ("json", "csv", "xml", *(["svg"] if starts else []))
-    stem = f"{loaded.design.name}-{loaded.moments.name}-ride"
+    stem = f"{loaded.design.name}-{loaded.drive.name.replace(' ', '-')}-ride"
     paths = require_results(out, stem, suffixes, inputs) if out else {}
     case, result = fes_mj.RideCase(loaded), fes_mj.starts(loaded) if starts else None
     content = case.summary() | (result.summary() if result else {})
@@ -124,9 +134,11 @@ def _texts(case: fes_mj.RideCase, starts: Starts | None, result: str) -> list[st
 
 def _print(case: fes_mj.RideCase, starts: Starts | None) -> None:
     ride, run = case.ride, case.simulation.trace
+    if isinstance(ride.drive, JointMoments):
+        say(NO_FALL)
     if case.agrees:
         road = f"{ride.transmission}{' gear' if ride.fixed else ''}, {100 * ride.road.slope:g} % slope"
-        title = f"{what_moves(ride.design, ride.moments.name)}; {road}"
+        title = f"{what_moves(ride.design, ride.drive.name)}; {road}"
         error = case.uncertainty
         rows = beside(_rows(run, error["mujoco"]), _rows(case.reference, error["reduced"]))
         print_table(title, ("", "MuJoCo", "reduced model"), rows)

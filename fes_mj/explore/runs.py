@@ -24,6 +24,7 @@ from fes_mj.optimization.findings import Findings
 from fes_mj.optimization.optimize import optimize
 from fes_mj.optimization.stimulated import MuscleDrive
 from fes_mj.riding.ride import Ride, Road
+from fes_mj.riding.stimulated import stimulated_rider
 from fes_mj.statics.drive import Drive
 from fes_mj.verification.case import VerificationCase
 from fes_mj.verification.suite import quick_groups, verify
@@ -43,9 +44,10 @@ def simulate(design: Design, drive: Drive, state: Path, *, legs: int) -> dict[st
     return _checked("Dynamic and static", power, [*verify(one_leg, quick_groups(legs))])
 
 
-def ride(design: Design, moments: JointMoments, state: Path, *, transmission: str, slope: float) -> dict[str, Any]:
+def ride(design: Design, drive: Drive, state: Path, *, transmission: str, slope: float) -> dict[str, Any]:
     """As `fes_mj ride`, slope in percent, in the same form. Raises what RideCase raises."""
-    case = RideCase(Ride(design, moments, Road(slope=slope / 100), transmission=transmission))
+    moving = stimulated_rider(drive, design) if isinstance(drive, Muscles) else drive
+    case = RideCase(Ride(design, moving, Road(slope=slope / 100), transmission=transmission))
     result = case.sentence.removesuffix(".")
     return _checked("The two solvers", result[:1].lower() + result[1:], case.checks)
 
@@ -75,7 +77,7 @@ def optimise(design: Design, drive: Drive, state: Path) -> dict[str, Any]:
     return {"ok": True, "verdict": verdict, "design": content_of(optimum.design) | {"name": f"{design.name}-optimised"}}
 
 
-BY_MUSCLES = {"simulate", "optimise"}  # the others know joint moments alone
+BY_MUSCLES = {"simulate", "ride", "optimise"}  # the other knows joint moments alone
 RUNS: dict[str, Callable[..., dict[str, Any]]] = {run.__name__: run for run in (simulate, ride, fit, optimise)}
 
 

@@ -33,8 +33,12 @@ class Drive:
 
 def drive(design: Design, moments: JointMoments, points: int = POINTS) -> Drive:
     """Moments for a design. points: crank angles of the turn."""
+    return driven(kinematics.solve(design, np.linspace(0, 2 * np.pi, points, endpoint=False)), moments)
+
+
+def driven(motion: kinematics.Motion, moments: JointMoments) -> Drive:
+    """The same along a motion over uniform crank angles."""
     torque = torque_map(moments)
-    motion = kinematics.solve(design, np.linspace(0, 2 * np.pi, points, endpoint=False))
     angle, rate = motion.joint_angle, motion.joint_rate
     sides = [rate[joint] >= 0 for joint in JOINTS] + [
         torque.reference.excess(joint, angle[joint]) == 0 for joint in JOINTS

@@ -15,7 +15,9 @@ from fes_mj.linkage.inertia import GRAVITY, CrankInertia, inertias
 from fes_mj.linkage.legs import TWO_LEGS
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.riding.leg_table import LegTable, leg_table
+from fes_mj.riding.stimulated import StimulatedRider
 from fes_mj.statics.turn import quasi_static
+from fes_mj.statics.validity import turning_in_range
 
 TRANSMISSIONS = ("freewheel", "fixed")
 AIR_DENSITY = 1.2  # kg/m^3, at 20 deg C and sea level
@@ -66,7 +68,7 @@ class Load(NamedTuple):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Ride(Brief):
-    """A design with both legs on a road, driven by joint moments that follow the crank angle.
+    """A design with both legs on a road, driven by stimulated muscles, or joint moments that follow the crank angle.
 
     transmission: one of TRANSMISSIONS. launch: speed at the start, m/s; 0 is a start from rest. start: crank angle
     there, rad. duration: s.
@@ -76,7 +78,7 @@ class Ride(Brief):
     """
 
     design: Design
-    moments: JointMoments
+    drive: JointMoments | StimulatedRider
     road: Road = field(default_factory=Road)
     transmission: str = "freewheel"
     launch: float = TRICYCLE_SPEED
@@ -93,13 +95,21 @@ class Ride(Brief):
 
     @property
     def name(self) -> str:
-        """Design, moments, transmission and slope."""
-        return f"{self.design.name} {self.moments.name} {self.transmission} {100 * self.road.slope:.3g} %"
+        """Design, drive, transmission and slope."""
+        return f"{self.design.name} {self.drive.name} {self.transmission} {100 * self.road.slope:.3g} %"
 
     @property
     def travel(self) -> float:
         """Road per crank angle, m/rad."""
         return WHEEL_DIAMETER / 2 / self.design.linkage.gear_ratio
+
+    def require_possible(self) -> None:
+        """Raise AssemblyError if the linkage does not turn, InputError for joints that the drive knows nothing of."""
+        if isinstance(self.drive, JointMoments):
+            for leg in TWO_LEGS:
+                turning_in_range(self.design, self.drive.of_leg(leg.prefix).measured_on)
+        else:
+            self.drive.require_range(self.design)
 
     @property
     def load(self) -> Load:
@@ -122,14 +132,15 @@ class Ride(Brief):
 
     @property
     def table(self) -> LegTable:
-        """Masses and moments of both legs over the crank angle."""
-        return leg_table(self.design, self.moments)
+        """Masses and drive of both legs over the crank angle."""
+        return leg_table(self.design, self.drive)
 
     def summary(self) -> dict[str, Any]:
         """What is ridden as JSON names and units it."""
+        drive = self.drive
         return {
             "design": self.design.name,
-            "group": self.moments.name,
+            **({"drive": "moments", "group": drive.name} if isinstance(drive, JointMoments) else drive.summary()),
             "transmission": self.transmission,
             "slope_percent": 100 * self.road.slope,
             "launch_kmh": self.launch / KMH,
@@ -145,8 +156,11 @@ def balancing_slope(ride: Ride, speed: float = TRICYCLE_SPEED) -> float:
     Raises InputError as quasi_static, and where that power would climb a wall.
     """
     cadence = speed / ride.travel
-    moments = (ride.moments.of_leg(leg.prefix) for leg in TWO_LEGS)
-    power = sum(quasi_static(ride.design, own, cadence).power_mean for own in moments)
+    drive = ride.drive
+    if isinstance(drive, JointMoments):
+        power = sum(quasi_static(ride.design, drive.of_leg(leg.prefix), cadence).power_mean for leg in TWO_LEGS)
+    else:
+        power = len(TWO_LEGS) * drive.power_mean(ride.design, cadence)
     level = replace(ride, road=replace(ride.road, slope=0.0)).load
     rolling = ride.road.rolling_resistance
     # rolling cos b + sin b = sqrt(1 + rolling^2) sin(b + atan rolling)
@@ -164,10 +178,8 @@ def steady_ripple(ride: Ride) -> float:
 
     Against a constant force that takes the mean power; see even_ripple.
     """
-    table = ride.table
-    drive = (table.joint_rate * table.moment).sum(axis=0)
-    turn = slice(-1)
-    return float(even_ripple(ride, drive[turn], CrankInertia(*(curve[turn] for curve in table.masses))))
+    table, turn = ride.table, slice(-1)
+    return float(even_ripple(ride, table.push[turn], CrankInertia(*(curve[turn] for curve in table.masses))))
 
 
 def even_ripple(ride: Ride, drive: FloatArray, legs: CrankInertia) -> FloatArray:

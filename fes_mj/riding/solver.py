@@ -6,26 +6,29 @@ I(a) w^2 / 2 - X(a) w v + m v^2 / 2, where X = sum of m dx/da over both legs' bo
     I w' - X v' = Q - V'(a) - I'(a) w^2 / 2 - T        (crank)
     m v' - X w' = X'(a) w^2 - F(v) + T / c             (tricycle)
 
-Q is the virtual work of the joint moments, F the road's force and T the moment that the transmission takes from the
+Q is the virtual work of the joint moments, or of muscles (muscle_table), whose activations are states as well. F is
+the road's force and T the moment that the transmission takes from the
 crank. A fixed gear keeps v = c w. A freewheel does while T is positive, and otherwise lets v run ahead of c w with
 T = 0: no impact, no memory. Rolling resistance is dry friction: it holds a tricycle that stands.
 """
 
 import math
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 from fes_mj.common.machine_code import kept_machine_code, machine_code, sources
 from fes_mj.linkage.inertia import CrankInertia
 from fes_mj.riding.leg_table import LegTable, leg_table
-from fes_mj.riding.lookup import DRIVEN, between, place
+from fes_mj.riding.lookup import between, place
+from fes_mj.riding.muscle_table import MuscleTable, driven_by
 from fes_mj.riding.ride import Load, Ride
+from fes_mj.riding.stimulated import NO_STIMULATOR, StimulatedRider, Stimulator, felt
 
 TOUCH = 1e-12  # m/s: rounding, by which a crank that has just caught up may be too fast or too slow
 STANDING = 1e-9  # rad/s: a crank that is slower takes no step by its angle
 NEAR = 1e-9  # rad: rounding, by which a step may miss the end of a cell
 LONGEST, LONGEST_FREE = 0.016, math.radians(1.0)  # s, of a step: where the crank is slow; rad: where it runs free
 HALVINGS = 14  # of a step, to find an event in it
-COUNT = len(DRIVEN)
+QUICK = 0.25  # of the time constant of a rise, that no step is longer than
 
 
 class System(NamedTuple):
@@ -34,6 +37,7 @@ class System(NamedTuple):
     """
 
     table: LegTable
+    stimulator: Stimulator
     load: Load
     fixed: bool
     travel: float
@@ -41,8 +45,11 @@ class System(NamedTuple):
     free: float
 
 
+Activation: TypeAlias = tuple[float, float, float, float, float, float]
+
+
 class State(NamedTuple):
-    """Angles in rad, speeds in rad/s and m/s, work since the start in J."""
+    """Angles in rad, speeds in rad/s and m/s, work since the start in J; activation of the right, then the left leg."""
 
     crank_angle: float
     crank_speed: float
@@ -50,10 +57,11 @@ class State(NamedTuple):
     speed: float
     muscle_work: float
     road_work: float
+    activation: Activation
 
 
 # What is kept of a state at each step: fields of a Trace.
-SAMPLE = ("time", "coasting", *State._fields)
+SAMPLE = ("time", "coasting", *State._fields[:-1])
 
 
 class Mode(NamedTuple):
@@ -65,13 +73,16 @@ class Mode(NamedTuple):
 
 def system(ride: Ride, fineness: int) -> System:
     """The equation of motion of a ride. fineness: divides steps and the table's cells."""
-    table = leg_table(ride.design, ride.moments, fineness)
-    return System(table, ride.load, ride.fixed, ride.travel, LONGEST / fineness, LONGEST_FREE / fineness)
+    table = leg_table(ride.design, ride.drive, fineness)
+    stimulator = ride.drive.stimulator if isinstance(ride.drive, StimulatedRider) else NO_STIMULATOR
+    longest = min(LONGEST, QUICK * stimulator.rise)
+    return System(table, stimulator, ride.load, ride.fixed, ride.travel, longest / fineness, LONGEST_FREE / fineness)
 
 
 @machine_code
 def moved(state: State, rates: State, time: float) -> State:
     """A state, and so much time along its rates."""
+    old, new = state.activation, rates.activation
     return State(
         state.crank_angle + time * rates.crank_angle,
         state.crank_speed + time * rates.crank_speed,
@@ -79,7 +90,41 @@ def moved(state: State, rates: State, time: float) -> State:
         state.speed + time * rates.speed,
         state.muscle_work + time * rates.muscle_work,
         state.road_work + time * rates.road_work,
+        (
+            old[0] + time * new[0],
+            old[1] + time * new[1],
+            old[2] + time * new[2],
+            old[3] + time * new[3],
+            old[4] + time * new[4],
+            old[5] + time * new[5],
+        ),
     )
+
+
+@machine_code
+def answering(system: System, group: int, angle: float, speed: float, active: float) -> float:
+    """Rate of an activation, 1/s; angle: of its leg's crank, rad."""
+    missing = felt(system.stimulator, group, angle, speed) - active
+    return missing / (system.stimulator.rise if missing > 0 else system.stimulator.fall)
+
+
+@machine_code
+def muscles(system: System, state: State, row: int, part: float) -> tuple[float, Activation]:
+    """Virtual work of both legs' muscles, N m, and the rates of their activations."""
+    table, angle, speed, active = system.table, state.crank_angle, state.crank_speed, state.activation
+    half = len(table.ahead) // 2
+    other, behind = row + half if row < half else row - half, angle - math.pi
+    drive = driven_by(table.muscles, row, part, speed, (active[0], active[1], active[2]))
+    drive += driven_by(table.muscles, other, part, speed, (active[3], active[4], active[5]))
+    rates = (
+        answering(system, 0, angle, speed, active[0]),
+        answering(system, 1, angle, speed, active[1]),
+        answering(system, 2, angle, speed, active[2]),
+        answering(system, 0, behind, speed, active[3]),
+        answering(system, 1, behind, speed, active[4]),
+        answering(system, 2, behind, speed, active[5]),
+    )
+    return drive, rates
 
 
 @machine_code
@@ -89,8 +134,10 @@ def rates_of(system: System, state: State, mode: Mode) -> tuple[State, float]:
     masses, speed, travelling = table.masses, state.crank_speed, state.speed
     row, part = place(state.crank_angle, len(table.ahead))
     inertia, recoil = between(masses.inertia, row, part), between(masses.recoil, row, part)
-    drive = 0.0
-    for joint in range(COUNT):
+    drive, activating = 0.0, state.activation
+    if len(table.muscles.group) > 0:
+        drive, activating = muscles(system, state, row, part)
+    for joint in range(len(table.moment)):
         drive += between(table.joint_rate[joint], row, part) * between(table.moment[joint], row, part)
     # the road is tilted by tilting gravity: backwards along it, and upright on it
     weight = load.upright * between(masses.height_rate, row, part) - load.along * recoil
@@ -114,7 +161,7 @@ def rates_of(system: System, state: State, mode: Mode) -> tuple[State, float]:
     else:
         turning, rolling = crank / inertia, 0.0
         push = recoil * turning + wheel
-    return State(speed, turning, travelling, rolling, drive * speed, resistance * travelling), push
+    return State(speed, turning, travelling, rolling, drive * speed, resistance * travelling, activating), push
 
 
 @machine_code
@@ -190,7 +237,7 @@ def to_event(system: System, start: State, first: State, mode: Mode, longest: fl
             crank_speed = 0.0
     if not mode.engaged and crank_speed * system.travel > speed:
         crank_speed = speed / system.travel
-    still = (end.distance, speed, end.muscle_work, end.road_work)
+    still = (end.distance, speed, end.muscle_work, end.road_work, end.activation)
     return State(end.crank_angle, crank_speed, *still), latest
 
 
@@ -215,7 +262,7 @@ def advance(
     clock: float,
     until: float,
     rows: Any,
-    version: int = sources(CrankInertia, LegTable, Load),
+    version: int = sources(CrankInertia, LegTable, MuscleTable, Load),
 ) -> tuple[int, State, Mode, float]:
     """Fill rows with SAMPLE at the start of each step, and at last at the end of the ride.
 

@@ -13,16 +13,14 @@ from fes_mj.common.brief import Brief
 from fes_mj.common.errors import UnstableError
 from fes_mj.common.machine_code import readable
 from fes_mj.common.units import KMH, RPM
-from fes_mj.linkage.legs import TWO_LEGS
 from fes_mj.riding.ride import Ride
-from fes_mj.statics.validity import turning_in_range
 
 LAST_TURNS = 5  # whole turns at the end, over which a ride is described
 # A tricycle that is no faster than this at the end, or this far back from where it had come, does not ride. Dry
 # friction stops it within a hundredth of a second of the former.
 LEAST_SPEED, LEAST_ADVANCE = 1e-3, 1e-5  # m/s, m
 SPLINE = 4  # samples on either side of a crank angle at which speeds are read
-STANDS = 1.0  # s, after which a tricycle that stands does so for good
+STANDS = 2.0  # s, after which a tricycle that stands does so for good: no muscle takes that long to answer
 ROWS = 16384  # samples that are made before Python looks at them
 MOST_ROWS = 2**21  # an hour of fast riding; beyond it something is wrong
 
@@ -182,10 +180,9 @@ def ride(ride: Ride, fineness: int = 1) -> Trace:
     """
     from fes_mj.riding import solver  # with numba, which takes a second to import
 
-    for leg in TWO_LEGS:
-        turning_in_range(ride.design, ride.moments.of_leg(leg.prefix).measured_on)
+    ride.require_possible()
     system = readable(solver.system(ride, fineness))
-    start = float(ride.start), ride.launch / ride.travel, 0.0, float(ride.launch), 0.0, 0.0
+    start = float(ride.start), ride.launch / ride.travel, 0.0, float(ride.launch), 0.0, 0.0, (0.0,) * 6
     state, mode, clock, until = solver.State(*start), solver.Mode(True, 0), 0.0, float(ride.duration)
     samples = np.empty((0, len(solver.SAMPLE)))
     while clock < until:

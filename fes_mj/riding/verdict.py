@@ -45,7 +45,7 @@ def _obstacle(trace: Trace) -> str:
     """What a ride that stopped could not pass."""
     ride, table, stop = trace.ride, trace.ride.table, trace.stop or 0
     angle = float(trace.crank_angle[stop])
-    push = (table.joint_rate * table.moment).sum(axis=0)[:-1]
+    push = table.push[:-1]
     asked = ride.travel * (ride.load.rolling + ride.load.climb)
     still = "the crank never turned: " if abs(angle - ride.start) < NOT_AT_ALL else ""
     if push.mean() <= asked:
@@ -71,7 +71,7 @@ def outside_known(trace: Trace) -> list[str]:
         rates = [ride.table.joint_rate[row] for row, driven in enumerate(DRIVEN) if driven[1] == joint]
         angle, speed = trace.crank_angle[part] % (2 * np.pi), np.abs(trace.crank_speed[part])
         own = max(float((speed * np.abs(np.interp(angle, turn, rate))).max()) for rate in rates)
-        reference = ride.moments.measured_on
+        reference = ride.drive.measured_on
         measured = reference.cadence * float(np.abs(reference.joint_rates(turn)[joint]).max())
         if own > FASTEST_JOINTS * measured:
             beyond.append(f"the {joint} at {own / measured:.1f} times the fastest that was measured")

@@ -19,7 +19,6 @@ from fes_mj.simulation.bench import joint_drives
 from fes_mj.simulation.road_control import RoadControl, act, memory_of, road_control
 from fes_mj.simulation.road_mjcf import DRIVETRAIN, ROAD, TIMESTEP, build_road_mjcf, start_state
 from fes_mj.simulation.stepping import Loop, Run, Sensors, controlled_loop, energy, run_loop
-from fes_mj.statics.validity import turning_in_range
 
 INSTANT = 1e-5  # s, in which the acceleration at the start is read off
 MakeControl: TypeAlias = Callable[[mujoco.MjModel], RoadControl]  # the control of a ride in its model
@@ -127,8 +126,7 @@ def ride_on_road(
     road_control. make_loop: another loop than road_loop. record: what is made of the sensors. Raises InputError as
     trace.ride, UnstableError if the integration breaks down.
     """
-    for leg in TWO_LEGS:
-        turning_in_range(ride.design, ride.moments.of_leg(leg.prefix).measured_on)
+    ride.require_possible()
     spec = build_road_mjcf(ride, timestep, drawn=False)
     edit(spec)
     model, loop = spec.compile(), make_loop(control or partial(road_control, ride))

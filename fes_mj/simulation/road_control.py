@@ -1,5 +1,6 @@
 """What the rider's muscles and the freewheel do in each step of a ride in MuJoCo."""
 
+import math
 from typing import Any, NamedTuple
 
 import mujoco
@@ -8,9 +9,13 @@ import numpy as np
 from fes_mj.common.arrays import FloatArray, IntArray
 from fes_mj.common.machine_code import machine_code
 from fes_mj.linkage.legs import TWO_LEGS
-from fes_mj.moments.drive import drive
+from fes_mj.moments.drive import drive as driven_by_moments
+from fes_mj.moments.joint_moments import JointMoments
+from fes_mj.muscles.anatomy import GROUPS
+from fes_mj.muscles.step import LegMuscles, activated, joint_moments, weights
 from fes_mj.riding.lookup import DRIVEN, between, place
 from fes_mj.riding.ride import Ride
+from fes_mj.riding.stimulated import NO_STIMULATOR, Stimulator, felt
 from fes_mj.simulation.road_mjcf import ROAD
 from fes_mj.simulation.stepping import drive_addresses
 
@@ -18,44 +23,98 @@ from fes_mj.simulation.stepping import drive_addresses
 class RoadControl(NamedTuple):
     """What the control knows of a ride and its model; arrays by DRIVEN.
 
-    travel: m/rad. road, crank: addresses of the joints' positions; so actuator, of the motors. leg_lag: rad. moment:
-    N m over a turn of the own leg's crank, shape (4, cells + 1).
+    travel: m/rad. road, crank, crank_speed: addresses of the joints' positions and of a speed; so position, speed and,
+    of the motors, actuator. leg_lag: rad. knee, hip: their rows, by leg. moment: N m over a turn of the own leg's
+    crank, shape (4, cells + 1); of a ride by muscles none, but `muscles` and their `stimulator`. rising, falling:
+    step.weights of a time step.
     """
 
     fixed: bool
     travel: float
     road: int
     crank: int
+    crank_speed: int
+    position: IntArray
+    speed: IntArray
     actuator: IntArray
     leg_lag: FloatArray
+    knee: IntArray
+    hip: IntArray
     moment: FloatArray
+    muscles: LegMuscles
+    stimulator: Stimulator
+    rising: tuple[float, float, float]
+    falling: tuple[float, float, float]
 
 
 class Memory(NamedTuple):
-    """What changes from step to step. limit: range of the tendon from road to crank, rad, of which the first moves."""
+    """What changes from step to step. limit: range of the tendon from road to crank, rad, of which the first moves.
+
+    activation, felt: of the groups and what they last felt of the stimulation, shape (legs, groups); NaN before the
+    first step.
+    """
 
     limit: FloatArray
+    activation: FloatArray
+    felt: FloatArray
+
+
+_NONE = np.zeros(0)
+_NO_MUSCLES = LegMuscles(
+    group=np.zeros(0, int),
+    knee_inside=np.zeros(0, bool),
+    lengths=np.zeros((0, 1, 1)),
+    orders=np.zeros((0, 1), int),
+    rows=np.zeros(0, int),
+    straight=_NONE,
+    force=_NONE,
+    optimal=_NONE,
+    slack=_NONE,
+    thickness=_NONE,
+    max_speed=_NONE,
+    rise=1.0,
+    fall=1.0,
+    delay=0.0,
+)
 
 
 def road_control(ride: Ride, model: mujoco.MjModel) -> RoadControl:
     """The control of a ride in its model."""
-    cells = len(ride.table.ahead)
-    drives = {leg: drive(ride.design, ride.moments.of_leg(leg.prefix), cells) for leg in TWO_LEGS}
-    moments = [drives[leg].moment[joint] for leg, joint in DRIVEN]
+    cells, drive, step = len(ride.table.ahead), ride.drive, float(model.opt.timestep)
+    muscles, stimulator, moments = _NO_MUSCLES, NO_STIMULATOR, np.zeros((0, cells + 1))
+    if isinstance(drive, JointMoments):
+        drives = {leg: driven_by_moments(ride.design, drive.of_leg(leg.prefix), cells) for leg in TWO_LEGS}
+        moments = np.array(
+            [np.append(curve, curve[0]) for curve in (drives[leg].moment[joint] for leg, joint in DRIVEN)]
+        )
+    else:
+        muscles, stimulator = LegMuscles.of(drive.riders, ride.design.rider), drive.stimulator
+    addresses = np.array([drive_addresses(model, leg.prefix + joint) for leg, joint in DRIVEN])
+    crank = model.joint("crank")
     return RoadControl(
         fixed=ride.fixed,
         travel=ride.travel,
         road=int(model.joint(ROAD).qposadr[0]),
-        crank=int(model.joint("crank").qposadr[0]),
-        actuator=np.array([drive_addresses(model, leg.prefix + joint)[0] for leg, joint in DRIVEN]),
+        crank=int(crank.qposadr[0]),
+        crank_speed=int(crank.dofadr[0]),
+        position=addresses[:, 1].copy(),
+        speed=addresses[:, 2].copy(),
+        actuator=addresses[:, 0].copy(),
         leg_lag=np.array([leg.lag for leg, _ in DRIVEN]),
-        moment=np.array([np.append(moment, moment[0]) for moment in moments]),
+        knee=np.array([row for row, (_, joint) in enumerate(DRIVEN) if joint == "knee"]),
+        hip=np.array([row for row, (_, joint) in enumerate(DRIVEN) if joint == "hip"]),
+        moment=moments,
+        muscles=muscles,
+        stimulator=stimulator,
+        rising=weights(step, stimulator.rise),
+        falling=weights(step, stimulator.fall),
     )
 
 
 def memory_of(model: mujoco.MjModel) -> Memory:
-    """That of a ride that begins."""
-    return Memory(model.tendon_range.reshape(-1))
+    """That of a ride that begins, with muscles at rest."""
+    shape = len(TWO_LEGS), len(GROUPS)
+    return Memory(model.tendon_range.reshape(-1), np.zeros(shape), np.full(shape, np.nan))
 
 
 @machine_code
@@ -67,7 +126,31 @@ def act(control: RoadControl, memory: Memory, qpos: Any, speeds: Any, ctrl: Any)
     angle = qpos[control.crank]
     if not control.fixed:
         memory.limit[0] = max(memory.limit[0], qpos[control.road] / control.travel - angle)
-    for driven in range(len(control.actuator)):
+    for driven in range(len(control.moment)):
         curve = control.moment[driven]
         row, part = place(angle - control.leg_lag[driven], len(curve) - 1)
         ctrl[control.actuator[driven]] = between(curve, row, part)
+    if len(control.muscles.group) > 0:
+        for leg in range(len(memory.activation)):
+            pull(control, memory, leg, qpos, speeds, ctrl)
+
+
+@machine_code
+def pull(control: RoadControl, memory: Memory, leg: int, qpos: Any, speeds: Any, ctrl: Any) -> None:
+    """Set the moments of a leg's muscles."""
+    knee, hip = control.knee[leg], control.hip[leg]
+    angle, activation, before = qpos[control.crank] - control.leg_lag[knee], memory.activation[leg], memory.felt[leg]
+    for group in range(len(activation)):
+        now = felt(control.stimulator, group, angle, speeds[control.crank_speed])
+        if not math.isnan(before[group]):
+            activation[group] = activated(activation[group], before[group], now, control.rising, control.falling)
+        before[group] = now
+    moments = joint_moments(
+        control.muscles,
+        activation,
+        qpos[control.position[knee]],
+        qpos[control.position[hip]],
+        speeds[control.speed[knee]],
+        speeds[control.speed[hip]],
+    )
+    ctrl[control.actuator[knee]], ctrl[control.actuator[hip]] = moments

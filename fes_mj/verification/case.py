@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from fes_mj.crosscheck.turn_case import Case
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.riding.ride import TRANSMISSIONS, Ride, Road
+from fes_mj.riding.stimulated import TIMINGS, stimulated_rider
 from fes_mj.verification import energy
 from fes_mj.verification.references import Curves, differences, exact_curves
 from fes_mj.verification.refinement import refine
@@ -68,9 +69,12 @@ class VerificationCase(Case):
         """Short rides launched at the speed of the cadence: flat with either transmission, and rolling back."""
         from fes_mj.crosscheck.ride_case import RideCase  # needs SciPy, which a turn does not
 
-        if not isinstance(self.drive, JointMoments):
+        if isinstance(self.drive, JointMoments):
+            ride = Ride(self.design, self.drive, duration=RIDE_DURATION)
+        elif self.drive.timing in TIMINGS:
+            ride = Ride(self.design, stimulated_rider(self.drive, self.design, self.cadence), duration=RIDE_DURATION)
+        else:  # which no stimulator knows on a road
             return []
-        ride = Ride(self.design, self.drive, duration=RIDE_DURATION)
         ride = replace(ride, launch=self.cadence * ride.travel)
         flat = [replace(ride, transmission=kind) for kind in TRANSMISSIONS]
         steep = replace(ride, transmission="fixed", road=STEEP, duration=STEEP_DURATION)

@@ -132,7 +132,7 @@ def _draw_ride(figure: Figure, case: RideCase, end: float) -> list[Axes]:
     power.axhline(0, color="black", lw=0.8)
     speed.legend(loc="lower left", bbox_to_anchor=(-0.02, 1.0), fontsize=11, ncols=2)
     ride, trace = case.ride, case.simulation.trace
-    road = f"joint moments {ride.moments.name.upper()}, {ride.transmission}, {100 * ride.road.slope:.3g} % slope"
+    road = f"joint moments {ride.drive.name.upper()}, {ride.transmission}, {100 * ride.road.slope:.3g} % slope"
     write_title(figure, ride.design, road)
     at_end = "" if trace.mean_speed is None else f", {trace.mean_speed / KMH:.1f} km/h at the end"
     result = f"{what_became(trace).word.replace('-', ' ')}{at_end}; the two solvers agree"

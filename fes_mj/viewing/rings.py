@@ -67,7 +67,7 @@ def starts_svg(starts: Starts) -> str:
         lines = ((0.62, f"starts from {100 * starts.share:.0f} %", INK), (0.5, launch, FAINT), (0.38, slope, FAINT))
         for height, text, colour in lines:
             axes.text(0.5, height, text, ha="center", va="center", color=colour, transform=axes.transAxes)
-        title = f"{ride.design.name}, {ride.moments.name}, {ride.transmission}, {100 * ride.road.slope:g} %"
+        title = f"{ride.design.name}, {ride.drive.name}, {ride.transmission}, {100 * ride.road.slope:g} %"
         figure.text(0.5, 0.94, literal(title), ha="center", size=11, weight="bold")
         return f"<!-- Written by fes_mj: starts from rest -->\n{svg_text(figure)}"
 

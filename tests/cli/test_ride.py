@@ -22,7 +22,7 @@ def test_json_of_a_ride(capsys: pytest.CaptureFixture[str]) -> None:
     assert code == 0
     assert set(content) >= KEYS
     assert (content["rides"], content["stopped_at_s"], content["agrees"]) == (True, None, True)
-    assert (content["group"], content["freewheel_share"]) == ("p1p3", 0)
+    assert (content["drive"], content["group"], content["freewheel_share"]) == ("muscles", "p1p3", 0)
     # wheel of 0.66 m, crank turns per wheel turn: the transmission ties the two means together
     wheel = content["cadence_rpm"] / 60 / 2.03 * np.pi * 0.66
     assert content["speed_kmh"] / 3.6 == pytest.approx(wheel, rel=1e-3)
@@ -55,9 +55,9 @@ def test_a_ride_on_which_the_solvers_do_not_agree_has_no_speed(
 
 def test_out_writes_result_ride_and_model(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     assert result(capsys, "ride", "trt", "--duration", "2", "-q", "--out", str(tmp_path)) == (0, "", "")
-    assert names(tmp_path) == {f"trt-p1p2-ride.{suffix}" for suffix in ("json", "csv", "xml")}
-    content = json.loads((tmp_path / "trt-p1p2-ride.json").read_text())
-    table = np.genfromtxt(tmp_path / "trt-p1p2-ride.csv", delimiter=",", names=True)
+    assert names(tmp_path) == {f"trt-p1p2-muscles-ride.{suffix}" for suffix in ("json", "csv", "xml")}
+    content = json.loads((tmp_path / "trt-p1p2-muscles-ride.json").read_text())
+    table = np.genfromtxt(tmp_path / "trt-p1p2-muscles-ride.csv", delimiter=",", names=True)
     assert table["distance_m"].max() == pytest.approx(content["distance_m"], rel=1e-6)
     assert table["time_s"][-1] == pytest.approx(2.0)
 
@@ -74,6 +74,9 @@ def test_out_writes_result_ride_and_model(capsys: pytest.CaptureFixture[str], tm
         (["--duration", "0"], '"0.0" for --duration. Must be >= 1.'),
         (["--crr", "2"], '"2.0" for --crr'),
         (["--drag-area", "inf"], '"inf" for --drag-area'),
+        (["--duty", "2"], "duty is 2"),
+        (["--timing", "by-angle"], "a ride knows the windows of best and measured alone"),
+        (["--moments", "own.csv"], "--moments say nothing of muscles"),
         (["--out", "nowhere/out"], "nowhere: cannot write the results: the folder does not exist"),
     ],
 )
@@ -82,6 +85,12 @@ def test_bad_input(arguments: list[str], words: str, capsys: pytest.CaptureFixtu
     assert (code, out) == (2, "")
     assert words in err
     assert err.count("\n") == 1
+
+
+def test_a_ride_by_moments_says_first_that_they_do_not_fall_with_speed(capsys: pytest.CaptureFixture[str]) -> None:
+    code, out, _ = result(capsys, "ride", "trt", "--drive", "moments", "--duration", "1")
+    assert code == 0
+    assert out.startswith("Joint moments do not fall with speed")
 
 
 @pytest.mark.long
@@ -95,4 +104,4 @@ def test_starts(capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch:
     assert 0 < content["launch_speed_kmh"] < 5.71
     assert 0 < content["slope_limit_percent"] < 30
     assert len(content["start_angles_deg"]) == round(16 * content["start_share"])
-    assert "fes_mj" in (tmp_path / "r1-p1p2-ride.svg").read_text()[:40]
+    assert "fes_mj" in (tmp_path / "r1-p1p2-muscles-ride.svg").read_text()[:40]

@@ -1,17 +1,26 @@
 """Two solvers on one ride: they agree, and a mistake in one of them is seen."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
 import fes_mj
 from fes_mj.crosscheck.ride_case import RideCase
+from fes_mj.muscles.drive import Muscles
+from fes_mj.muscles.riders import load_riders
 from fes_mj.riding.ride import Ride, Road, balancing_slope
+from fes_mj.riding.stimulated import stimulated_rider
 from fes_mj.riding.trace import ride as ride_by_equation
 
 P1P2 = fes_mj.load_moments("p1p2")
 P1P3 = fes_mj.load_moments("p1p3")
+
+
+def by_muscles(name: str, group: str, **how: Any) -> Ride:
+    design = fes_mj.load_design(name)
+    return Ride(design, stimulated_rider(Muscles(load_riders(group).taken(slice(0, 8))), design), **how)
 
 
 @pytest.mark.parametrize(
@@ -24,6 +33,10 @@ P1P3 = fes_mj.load_moments("p1p3")
         Ride(fes_mj.load_design("r2"), P1P2, Road(slope=0.20), duration=20.0),
         Ride(fes_mj.load_design("d1"), P1P2, Road(slope=0.033), duration=20.0),  # slowly through its dead centres
         Ride(fes_mj.load_design("d2"), P1P3, transmission="fixed", duration=20.0),  # it ends where the crank jerks
+        by_muscles("d2", "p1p3", transmission="fixed", duration=6.0),
+        by_muscles("d1", "p1p2", road=Road(slope=0.02), duration=6.0),
+        by_muscles("r2", "p1p2", road=Road(slope=0.08), transmission="fixed", duration=6.0),  # it rolls back
+        by_muscles("trt", "p1p3", road=Road(slope=-0.01), launch=0.0, start=1.0, duration=6.0),
     ],
     ids=lambda ride: ride.name,
 )

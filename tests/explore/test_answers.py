@@ -75,7 +75,7 @@ def test_the_model_loads_in_mujoco(answers: Answers, legs: int) -> None:
         ("simulate", {"legs": [1]}, r"legs is \[1\]"),
         ("ride", {"transmission": "chain"}, "transmission is 'chain'"),
         ("ride", {"slope": 45}, "slope is 45"),
-        ("ride", {"drive": "muscles"}, "muscles do not drive this"),
+        ("fit", {"drive": "muscles"}, "muscles do not drive this"),
         ("ride", {"drive": "legs"}, "drive is 'legs'"),
     ],
 )

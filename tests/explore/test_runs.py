@@ -19,6 +19,7 @@ from fes_mj.muscles.timing import DUTY
 from fes_mj.optimization.problem import make_problem
 from fes_mj.optimization.stimulated import MuscleDrive
 from fes_mj.riding.ride import Ride, Road
+from fes_mj.riding.stimulated import stimulated_rider
 
 D1, P1P2 = fes_mj.load_design("d1"), fes_mj.load_moments()
 
@@ -48,10 +49,13 @@ def test_a_check_that_fails_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyP
     assert run["verdict"].startswith("Dynamic and static do not agree (")
 
 
-def test_ride(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(runs, "Ride", partial(Ride, duration=4.0))
-    case = RideCase(Ride(D1, P1P2, Road(slope=0.02), transmission="fixed", duration=4.0))
-    run = runs.ride(D1, P1P2, tmp_path, transmission="fixed", slope=2)
+@pytest.mark.parametrize("drive", ["moments", "muscles"])
+def test_ride(drive: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(runs, "Ride", partial(Ride, duration=2.0))
+    muscles = fes_mj.load_muscles("p1p2")
+    moving = P1P2 if drive == "moments" else stimulated_rider(muscles, D1)
+    case = RideCase(Ride(D1, moving, Road(slope=0.02), transmission="fixed", duration=2.0))
+    run = runs.ride(D1, muscles if drive == "muscles" else P1P2, tmp_path, transmission="fixed", slope=2)
     assert run["ok"] == case.agrees
     speed = case.simulation.trace.mean_speed
     assert speed is None or f"{speed / KMH:.2f} km/h at the end" in run["verdict"]
