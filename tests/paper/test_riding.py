@@ -1,15 +1,20 @@
 """The page on riding: what its rows say, by rides of its own, and what must hold between them."""
 
 import json
+from functools import partial
 from pathlib import Path
 
+import numpy as np
 import pytest
 
-from fes_mj import load_design, load_moments
+from fes_mj import load_design
+from fes_mj.budget.unknowns import MASSES, priors
+from fes_mj.muscles.drive import Muscles
+from fes_mj.muscles.riders import load_riders
 from fes_mj.paper import riding
 from fes_mj.paper.printed import table1
-from fes_mj.riding.ride import Ride, Road
-from fes_mj.riding.trace import ride as solved
+from fes_mj.riding.ride import TRANSMISSIONS, Ride
+from fes_mj.riding.stimulated import stimulated_rider
 
 PAGE = json.loads((Path(__file__).parents[2] / "results" / "reproduction.json").read_text(encoding="utf-8"))["riding"]
 SPEEDS = {
@@ -23,18 +28,36 @@ def test_every_design_rides_with_both_groups_and_transmissions() -> None:
     assert len(PAGE["The gear ratio that suits"]) == len(PAGE["From where they start, and what they climb"]) == 20
 
 
-@pytest.mark.parametrize(("transmission", "rides"), [("freewheel", False), ("fixed", True)])
-def test_d1_on_the_slope_that_its_mean_power_climbs(transmission: str, rides: bool) -> None:
-    row = SPEEDS["D1", "p1p2", transmission]
-    moments = load_moments()
-    road = Road(slope=row["slope, %"] / 100)
-    ride = Ride(load_design("d1"), moments, road=road, transmission=transmission, duration=20.0)
-    assert solved(ride).rides is rides
-    assert (row["on this slope"] == "rides") is rides
+def test_everything_that_matters_on_a_road_is_drawn_and_always_the_same() -> None:
+    design, muscles = load_design("d1"), Muscles(load_riders("p1p3").taken(slice(0, 30)))
+    ride = Ride(design, stimulated_rider(muscles, design))
+    drawn, again = (riding.drawn_rides(ride, muscles, 20) for _ in range(2))
+    assert 15 < len(drawn) <= 20
+    for of in (
+        lambda one: one.drive.riders["rise_s"].item(),
+        lambda one: one.design.linkage.crank,
+        lambda one: one.design.rider.thigh,
+        lambda one: one.design.rider.leg_mass_factor,
+    ):
+        values = [of(one) for one in drawn]
+        assert len({*values}) == len(drawn)
+        assert values == [of(one) for one in again]
+    factors = np.log([one.design.rider.leg_mass_factor for one in riding.drawn_rides(ride, muscles, 200)])
+    assert factors.std() == pytest.approx(priors()[MASSES]["log_sd"], rel=0.2)
+    assert {one.drive.cadence for one in drawn} == {design.linkage.cadence}
 
 
-def test_muscles_are_drawn_anew_and_always_the_same() -> None:
-    best, *drawn = riding._muscles("p1p2")
-    again = riding._muscles("p1p2")[1:]
-    assert len({float(moments.knee[0]) for moments in (best, *drawn)}) == 1 + riding.DRAWS
-    assert [moments.knee.tolist() for moments in drawn] == [moments.knee.tolist() for moments in again]
+@pytest.mark.long
+def test_a_riding_of_few_draws(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Every table of the page from one design."""
+    pytest.importorskip("numba")
+    monkeypatch.setattr(riding, "DRAWS", 2)
+    monkeypatch.setattr(riding, "START_DRAWS", 0)
+    monkeypatch.setattr(riding, "ANGLES", 2)
+    monkeypatch.setattr(riding, "RATIOS", np.array([0.8, 1.0]))
+    monkeypatch.setattr(riding, "SHORT", 2.0)
+    monkeypatch.setattr(riding, "Ride", partial(Ride, duration=4.0))
+    muscles = Muscles(load_riders("p1p3").taken(slice(0, 8)))
+    rides = [riding._riding(load_design("trt"), "p1p3", muscles, kind) for kind in TRANSMISSIONS]
+    tables = (riding.speed_table, riding.start_table, riding.gear_table, riding.transmission_table)
+    assert [len(table(rides).records()) for table in tables] == [2, 2, 2, 1]
