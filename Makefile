@@ -47,6 +47,7 @@ verification: $(VENV)/.ready
 	$(BIN)/python tools/update_verification.py
 	$(BIN)/python -m studies.ride_verification
 	$(BIN)/python -m studies.muscles
+	$(BIN)/python -m studies.muscle_trials
 	$(BIN)/python -m studies.published
 	$(BIN)/python -m studies.settings
 
