@@ -41,13 +41,14 @@ benchmark: $(VENV)/.ready
 	for name in core start exudyn muscles optimization ride video; do $(BIN)/python -m benchmarks.$$name || exit 1; done
 
 # Every check on every design, refined, with all faults injected: results/verification.md; every ride by both solvers:
-# results/ride_verification.md; what muscles leave of the gains: results/muscles.md; what of it
-# agrees with measurements: results/published.md; what each setting of the simulation is worth: results/settings.md
+# results/ride_verification.md; muscles in MuJoCo: results/muscle_verification.md; what muscles leave of the gains:
+# results/muscles.md; what of it agrees with measurements: results/published.md; what each setting of the simulation is worth: results/settings.md
 verification: $(VENV)/.ready
 	$(BIN)/python tools/update_verification.py
 	$(BIN)/python -m studies.ride_verification
 	$(BIN)/python -m studies.muscles
 	$(BIN)/python -m studies.muscle_trials
+	$(BIN)/python -m studies.muscle_verification
 	$(BIN)/python -m studies.published
 	$(BIN)/python -m studies.settings
 

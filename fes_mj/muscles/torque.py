@@ -66,11 +66,14 @@ class MuscleTorque:
         """Largest part of an activation that may lie between two angles of `activation`, or two steps of this time, s.
 
         Where stimulation bends or jumps between two samples, no more of it is missed than the bend over a cell and a
-        step for half the time that both take; activation follows it by its share of the faster time constant.
+        step for half the time that both take; activation follows it by its share of the faster time constant. The
+        direction of a joint that turns round is told to a step: by joints what changes in two steps is missed as well.
         """
         asked = self._asked
         bend = np.abs(np.roll(asked, 1, axis=-1) - 2 * asked + np.roll(asked, -1, axis=-1)).max()
         cell = _FINE_TURN[1] / self.cadence
+        if self.stimulated.windows is None:
+            bend += 2 * timestep / cell * np.abs(np.diff(asked)).max()
         return float(bend * (1 + timestep / cell) * (cell + timestep) / 2 / self.leg.rise)
 
     @cached_property
