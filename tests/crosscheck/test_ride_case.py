@@ -13,6 +13,7 @@ from fes_mj.muscles.riders import load_riders
 from fes_mj.riding.ride import Ride, Road, balancing_slope
 from fes_mj.riding.stimulated import stimulated_rider
 from fes_mj.riding.trace import ride as ride_by_equation
+from fes_mj.simulation.road import RoadRun
 
 P1P2 = fes_mj.load_moments("p1p2")
 P1P3 = fes_mj.load_moments("p1p3")
@@ -71,3 +72,17 @@ def test_the_ride_as_a_table() -> None:
     assert len(rows) == len(case.simulation.trace.time) == 5001
     table = np.array([row.split(",") for row in rows], float)
     assert np.abs(table[:, 4] - table[:, 5]).max() < 1e-3
+
+
+@pytest.mark.parametrize(("given", "tried", "ridden"), [(None, 2e-4, 1e-4), (2e-4, 1e-4, 2e-4)])
+def test_a_trial_step_that_breaks_down_is_halved(given: float | None, tried: float, ridden: float) -> None:
+    class Fragile(RideCase):
+        def simulated(self, timestep: float) -> RoadRun:
+            if timestep > 3e-4:
+                raise fes_mj.UnstableError("too long")
+            return super().simulated(timestep)
+
+    case = Fragile(Ride(fes_mj.load_design("trt"), P1P2, Road(slope=0.01), duration=1.0), given)
+    assert (case.trial.timestep, case.simulation.timestep) == pytest.approx((tried, ridden))
+    assert case.agrees
+    assert 0 < case.uncertainty["mujoco"] < 1e-4
