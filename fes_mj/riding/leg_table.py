@@ -28,8 +28,6 @@ CELL_TOLERANCE, STEP_TOLERANCE = 1e-5, 1e-4
 LEAST_PUSH = 1e-3  # N m, of moments that are next to nothing
 MOST_CELLS = 64 * POINTS
 LONGEST_STEP = math.radians(2.0)
-# Windows of stimulation move with the crank's speed, and where they begin and end lies anywhere in a step.
-LONGEST_WITH_MUSCLES = math.radians(1.0)
 REST_POINTS = 360  # crank angles at which stimulation at a stand is known
 
 
@@ -66,8 +64,7 @@ def leg_table(design: Design, drive: JointMoments | StimulatedRider, fineness: i
                 "from their dead centres"
             )
         legs = _legs(design, drive, cells)
-    longest = LONGEST_STEP if isinstance(drive, JointMoments) else LONGEST_WITH_MUSCLES
-    there, back = _steps(legs, longest), _steps(legs.mirrored, longest)
+    there, back = _steps(legs), _steps(legs.mirrored)
     if fineness > 1:
         legs = _legs(design, drive, fineness * cells)
     rows, cell = np.arange(fineness * cells), 2 * np.pi / (fineness * cells)
@@ -141,7 +138,7 @@ def _cell_error(curves: FloatArray) -> float:
     return float(np.abs(first - 2 * middle + last).sum(axis=1).max() * np.pi / curves.shape[1] / 3)
 
 
-def _steps(legs: _Legs, longest: float) -> IntArray:
+def _steps(legs: _Legs) -> IntArray:
     """Longest step forward from each row, in cells: Simpson's rule against the cells' straight lines."""
     curves, count, room = legs.curves, len(legs.breaks), legs.room
     cell, rows = 2 * np.pi / count, np.arange(count)
@@ -149,7 +146,7 @@ def _steps(legs: _Legs, longest: float) -> IntArray:
     integral = np.zeros(twice.shape)
     np.cumsum((twice[:, :-1] + twice[:, 1:]) * (cell / 2), axis=1, out=integral[:, 1:])
     steps, good, size = np.ones(count, int), np.ones(count, bool), 2
-    while size * cell <= longest:
+    while size * cell <= LONGEST_STEP:
         ahead = np.minimum(size, room)
         end, below, above = rows + ahead, rows + ahead // 2, rows + (ahead + 1) // 2
         simpson = (twice[:, rows] + 2 * (twice[:, below] + twice[:, above]) + twice[:, end]) * (ahead * cell / 6)
