@@ -1,4 +1,4 @@
-"""Write results/muscles.* and their figures: what stimulated muscles leave of the paper's gains, with intervals.
+"""Write results/muscles.* and their pictures: what stimulated muscles leave of the paper's gains, with intervals.
 
 python -m studies.muscles [ANATOMY.toml], a second anatomy that tools/make_muscles.py wrote and that may not be passed
 on; without it its rows are left as they were measured.
@@ -96,7 +96,7 @@ def main() -> None:
     made = tables(Path(sys.argv[1]) if sys.argv[1:] else None)
     write_text(PATH, "\n".join([HEADING, *(table._replace(note=NOTES[table.title]).markdown() for table in made)]))
     write_text(PATH.with_suffix(".json"), json_text({table.title: table.records() for table in made}))
-    figures.write(PATH.with_name("figures"), {table.title: table.records() for table in made})
+    figures.write(PATH.parent, {table.title: table.records() for table in made})
 
 
 HEADING = """# Muscles: what is left of the gain
@@ -105,13 +105,13 @@ Written by `python -m studies.muscles`; the model, its sources and the rules of 
 Gains are mean power per the TRT's, under one rule in every column; 5, 50 and 95 % are over the riders who may have been
 measured. No rider has been measured on any of these linkages.
 
-![True gains, by-angle gains and the paper's](figures/muscles-null-test.png)
+![True gains, by-angle gains and the paper's](muscles-null-test.png)
 
-![Gains with their intervals, by rule, at the paper's gears and at one cadence](figures/muscles-gains.png)
+![Gains with their intervals, by rule, at the paper's gears and at one cadence](muscles-gains.png)
 
-![Best windows and the power of both legs over the turn](figures/muscles-windows.png)
+![Best windows and the power of both legs over the turn](muscles-windows.png)
 
-![Power by cadence, and over half an hour](figures/muscles-fatigue.png)
+![Power by cadence, and over half an hour](muscles-fatigue.png)
 """
 NOTES = {
     "Null test": f"""\
