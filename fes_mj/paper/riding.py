@@ -32,9 +32,9 @@ from fes_mj.riding.stimulated import StimulatedRider, stimulated_rider
 from fes_mj.riding.trace import Trace, ride as solved
 from fes_mj.riding.verdict import FASTEST_CADENCE
 
-DRAWS = 48  # of all; a standard deviation of so many is known to a tenth of itself
-START_DRAWS = 6  # of these, in the search for starts, which takes some thirty times as long as a ride; to a third
-ANGLES = 12  # crank angles over half a turn, from which it is tried to start
+DRAWS = 24  # of all; a standard deviation of so many is known to a seventh of itself
+START_DRAWS = 4  # of these, in the search for starts, which takes some thirty times as long as a ride; to two fifths
+ANGLES = 8  # crank angles over half a turn, from which it is tried to start
 SHORT = 20.0  # s: what rides so long from rest goes on
 RATIOS = np.geomspace(0.125, 4.0, 21)  # times the design's own gear ratio
 SLOPES = (0.0, 0.02)  # on which the best gear ratio is sought
@@ -109,7 +109,8 @@ def _riding(design: Design, group: str, muscles: Muscles, transmission: str) -> 
     geared = []
     for ratio in RATIOS * design.linkage.gear_ratio:
         other = design.with_linkage(gear_ratio=float(ratio))
-        geared.append(replace(best, design=other, drive=stimulated_rider(muscles, other)))
+        set_at = min(float(other.linkage.cadence), FASTEST_CADENCE)  # beyond it no gear counts
+        geared.append(replace(best, design=other, drive=stimulated_rider(muscles, other, set_at)))
     on_slopes = {slope: [replace(ride, road=Road(slope=slope)) for ride in geared] for slope in SLOPES}
     with ThreadPoolExecutor(THREADS) as threads:
         return Riding(
