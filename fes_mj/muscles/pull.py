@@ -68,17 +68,15 @@ def pull(riders: Riders, motion: Motion, cadence: Any, muscles: Anatomy | None =
 def pull_at(riders: Riders, flexion: Flexion, rate: Flexion, rider: Rider, muscles: Anatomy | None = None) -> Pull:
     """The same at angles and rates of flexion (rad, rad/s) of shape (members or 1, designs, angles)."""
     muscles = muscles or anatomy()
-    column = (slice(None), None, None, None)
     lengths = muscles.lengths.at(flexion)
     speed = lengths.by_hip * rate.hip + lengths.by_knee * rate.knee
-    # length, fibre and tendon grow alike with the rider, so that relative lengths and speeds are those of the anatomy
-    relative, _ = tension(
-        lengths.value,
-        speed,
-        muscles.optimal[column],
-        riders.slack(muscles),
-        muscles.pennation[column],
-        riders["max_speed"],
-    )
-    force = relative * (riders.strength(muscles) * muscles.force[column])
+    slack, strength = riders.slack(muscles), riders.strength(muscles)
+    force, columns = np.empty_like(speed), (muscles.optimal, muscles.pennation, muscles.force)
+    # one after the other, as all of an ensemble do not fit the processor's cache
+    for muscle, (optimal, pennation, strongest) in enumerate(zip(*columns, strict=True)):
+        # length, fibre and tendon grow alike with the rider, so that relative lengths and speeds are the anatomy's
+        relative, _ = tension(
+            lengths.value[muscle], speed[muscle], optimal, slack[muscle], pennation, riders["max_speed"]
+        )
+        np.multiply(relative, strength[muscle] * strongest, out=force[muscle])
     return Pull(muscles, force, lengths, speed, muscles.length_scale(rider)[:, None])

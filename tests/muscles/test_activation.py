@@ -43,3 +43,14 @@ def test_turn_ends_where_it_began_and_answers_shift_with_their_windows():
     windows = np.stack([trapezium(ANGLE - shift, WIDTH, RAMP) for shift in np.radians([0.0, 75.0])])
     first, second = answer(windows, TURN, 0.05, np.array([0.1, 0.1]))
     assert second == pytest.approx(np.roll(first, 75), abs=1e-6)
+
+
+def test_many_cases_are_answered_as_alone():
+    """In blocks, and from a start that is far away."""
+    random = np.random.default_rng(3)
+    rise, fall = random.uniform([[0.02], [0.1]], [[0.1], [0.4]], (2, 2500))
+    stimulation = trapezium(ANGLE[::12] - random.uniform(0, 6, (2500, 1)), 1.5, 0.3)
+    together = answer(stimulation, 0.6, rise, fall, start=1.0)
+    for case in (0, 2047, 2048, 2499):
+        alone = answer(stimulation[case], 0.6, rise[case], fall[case])
+        assert together[case] == pytest.approx(alone, abs=2e-7)

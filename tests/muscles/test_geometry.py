@@ -21,3 +21,11 @@ def test_derivatives_are_those_of_the_same_polynomial(joint):
     powers = [(moved.hip - np.radians(70)) ** h * (moved.knee - np.radians(67.5)) ** k for h, k in exponents(5)]
     exact = np.einsum("mt,t...->m...", lengths.coefficients, np.stack(powers)).imag / step  # complex step
     assert getattr(lengths.at(Flexion(HIP, KNEE)), f"by_{joint}") == pytest.approx(exact, abs=1e-15)
+
+
+def test_many_angles_have_the_values_of_few():
+    lengths, bent = anatomy().lengths, np.radians(np.linspace(20, 100, 2500))
+    together = lengths.at(Flexion(bent, bent[::-1]))
+    for few in (slice(0, 3), slice(1022, 1026), slice(2497, 2500)):
+        for whole, part in zip(together, lengths.at(Flexion(bent[few], bent[::-1][few])), strict=True):
+            assert whole[:, few] == pytest.approx(part, rel=1e-13, abs=1e-15)
