@@ -21,13 +21,13 @@ from fes_mj.linkage.legs import LEGS
 from fes_mj.linkage.shapes import lowest_point
 from fes_mj.linkage.turning import FROM_TOP, turning
 from fes_mj.linkage.variables import crank_speed
-from fes_mj.moments.joint_moments import JointMoments
-from fes_mj.moments.torque_map import torque_map
+from fes_mj.muscles.drive import Muscles
 from fes_mj.simulation.appearance import FIELD_OF_VIEW, Spec, framing
+from fes_mj.simulation.native_muscles import native_muscles
 from fes_mj.simulation.road_mjcf import ROAD
 from fes_mj.simulation.variants import variant_model, variant_options
+from fes_mj.statics.drive import Drive, driven_speed, torque_source
 from fes_mj.statics.equilibrium import crank_moment
-from fes_mj.statics.validity import valid_speed
 
 SIDECAR_ROWS = 720  # a turn: every half degree
 CAMERA_SIDE = (-0.55, 0.80, 0.25)  # of the oblique camera: from the front right, a little above
@@ -75,13 +75,16 @@ def scene_text(design: Design, model_file: str) -> str:
     )
 
 
-def sidecar_text(design: Design, moments: JointMoments, cadence: float | None = None, legs: int = 1) -> str:
+def sidecar_text(design: Design, drive: Drive, cadence: float | None = None, legs: int = 1) -> str:
     """One turn at a cadence (rad/s, by default Eq. 16) as CSV, uniform in crank angle.
 
     Angles and moments of the driven joints, named as in the model, then the moment of all legs on the crank: with
-    masses and weight, as the model shows it, and without (quasi-static).
+    masses and weight, as the model shows it, and without (quasi-static). With muscles also their activations, and
+    moments as statics has them.
     """
-    cadence, torque = crank_speed(design, cadence), torque_map(moments)
+    cadence = crank_speed(design, cadence)
+    torque = torque_source(drive, design, cadence)
+    native = native_muscles(design, drive, cadence) if isinstance(drive, Muscles) else None
     angle = np.linspace(0, 2 * np.pi, SIDECAR_ROWS, endpoint=False)
     columns = {"crank_angle_deg": np.degrees(angle), FROM_TOP: turning(design).degrees_from_top(angle)}
     massive, massless = np.zeros((2, SIDECAR_ROWS))
@@ -91,6 +94,8 @@ def sidecar_text(design: Design, moments: JointMoments, cadence: float | None = 
         for joint, angles in motion.joint_angle.items():
             columns[f"{leg.prefix}{joint}_deg"] = np.degrees(angles)
             columns[f"{leg.prefix}{joint}_Nm"] = moment[joint]
+        for muscle, activation in (native.activation(angle - leg.lag) if native else {}).items():
+            columns[f"{leg.prefix}{muscle}_activation"] = activation
         massive += crank_moment(motion, own, cadence)
         massless += crank_moment(motion, own, cadence, mass_scale=0.0)
     return csv_text(columns | {"crank_Nm": massive, "quasi_static_crank_Nm": massless})
@@ -101,7 +106,7 @@ _SCENE = "scene.xml"
 
 def export(
     design: Design,
-    moments: JointMoments,
+    drive: Drive,
     path: str | Path,
     *,
     cadence: float | None = None,
@@ -111,6 +116,7 @@ def export(
 ) -> dict[str, Path]:
     """Write the MJCF model of a design to `path` (.xml) and, beside it as CSV, its moments over a turn.
 
+    drive: JointMoments, or with the variant muscles Muscles, of which it is the most probable rider.
     cadence: rad/s, by default Eq. 16. variants: names of variants.VARIANTS, combined. scene: also write scene.xml,
     beside the model: floor, light and camera. inputs: files that must not be replaced. Returns the paths by what they
     hold. Raises InputError for variants that exclude each other and for files that cannot be written, before any is.
@@ -120,7 +126,7 @@ def export(
     ['d1.xml', 'd1.csv']
     """
     options, out = variant_options(variants), Path(path)
-    cadence = valid_speed(design, moments, cadence, options.get("legs", 1))
+    cadence = driven_speed(design, drive, cadence, options.get("legs", 1))
     require_writable(out, "the model", ".xml", inputs)
     files = {"model": out, "table": out.with_suffix(".csv")}
     require_replaceable([files["table"]], "the table", inputs)
@@ -130,8 +136,8 @@ def export(
         files["scene"] = out.with_name(_SCENE)
         require_replaceable([files["scene"]], "the scene", inputs)
     texts = {
-        "model": mjcf_text(variant_model(design, moments, cadence, options)),
-        "table": sidecar_text(design, moments, cadence, options.get("legs", 1)),
+        "model": mjcf_text(variant_model(design, drive, cadence, options)),
+        "table": sidecar_text(design, drive, cadence, options.get("legs", 1)),
         "scene": scene_text(design, out.name),
     }
     write_files({file: texts[content] for content, file in files.items()}, unnamed={*files.values()} - {out})

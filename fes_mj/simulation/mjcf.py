@@ -72,15 +72,17 @@ REAL = Physics()
 class ModelOptions:
     """What a model contains.
 
-    anchors: what the loops are closed between. driven: joint motors and, if also `held`, a cadence that is held: by a
-    servo, which needs the integrator `discrete`, or if `compatible` by a flywheel, which Euler bears. Where nothing
-    holds the crank, Runge-Kutta of fourth order keeps the energy, in steps short enough for the fastest turn.
+    anchors: what the loops are closed between. driven: joint motors, unless without `motors` something else is to be
+    added, and, if also `held`, a cadence that is held: by a servo, which needs the integrator `discrete`, or if
+    `compatible` by a flywheel, which Euler bears. Where nothing holds the crank, Runge-Kutta of fourth order keeps the
+    energy, in steps short enough for the fastest turn.
     drawn: geoms, which are pictures only and cost a fifth of a step.
     """
 
     physics: Physics = REAL
     anchors: Literal["sites", "bodies"] = "sites"
     driven: bool = True
+    motors: bool = True
     held: bool = True
     compatible: bool = False
     drawn: bool = True
@@ -135,7 +137,7 @@ def build_mjcf(
         state |= {leg.prefix + joint: values for joint, values in start.items()}
     if options.drawn:
         appearance.draw(spec, design, pair)
-    if options.driven:
+    if options.driven and options.motors:
         add_motors(spec, pair)
     if held and options.compatible:  # its integrator bears no servo
         spec.joint("crank").armature = FLYWHEEL

@@ -14,11 +14,14 @@ from fes_mj.linkage.joints import JOINTS
 from fes_mj.linkage.legs import LEGS, TWO_LEGS
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.torque_map import torque_map
+from fes_mj.muscles.drive import Muscles
 from fes_mj.riding.ride import Ride
 from fes_mj.simulation.appearance import Spec
 from fes_mj.simulation.mjcf import INTEGRATORS, SERVO, ModelOptions, build_mjcf
+from fes_mj.simulation.native_muscles import native_muscles
 from fes_mj.simulation.road_mjcf import build_road_mjcf
 from fes_mj.simulation.time_step import steps_per_turn
+from fes_mj.statics.drive import Drive
 from fes_mj.statics.turn import quasi_static
 
 # Variant -> what it sets: what the crank meets (servo, if nothing is said), how the tricycle of the road is geared, how
@@ -32,6 +35,7 @@ VARIANTS: dict[str, dict[str, Any]] = {
     "ride": {"crank": "road", "legs": len(TWO_LEGS)},  # nobody rides on one
     "fixed-gear": {"transmission": "fixed"},
     "two-legs": {"legs": len(TWO_LEGS)},
+    "muscles": {"driven": True, "motors": False, "crank": "servo"},  # activations belong to a cadence that is held
     "compatible": {"compatible": True},
 }
 # Where the tricycle's inertia or its like rests on the crank, one evaluation a step keeps the energy well enough.
@@ -57,13 +61,34 @@ def variant_options(variants: Iterable[str]) -> dict[str, Any]:
     return options
 
 
-def variant_model(design: Design, moments: JointMoments, cadence: float, options: Mapping[str, Any]) -> Spec:
+def variant_model(design: Design, drive: Drive, cadence: float, options: Mapping[str, Any]) -> Spec:
     """The model at a cadence (rad/s) with what variant_options gives.
 
-    The moments set the range of the motors and the strength of the brake. Raises InputError as build_mjcf, and for a
-    brake where the moments deliver no power.
+    Joint moments set the range of the motors and the strength of the brake; muscles are added as MuJoCo's own. Raises
+    InputError as build_mjcf, for a brake where the moments deliver no power, and where the drive is not the variant's.
     """
-    content = dict(options)
+    if isinstance(drive, Muscles) == options.get("motors", True):
+        raise InputError("the variant muscles and stimulated muscles (load_muscles) belong together; give both or none")
+    if isinstance(drive, Muscles):
+        spec = _muscle_model(design, drive, cadence, dict(options))
+    else:
+        spec = _moment_model(design, drive, cadence, dict(options))
+    for actuator in spec.actuators:
+        if actuator.name == SERVO:
+            actuator.ctrlrange, actuator.ctrllimited = (0.0, 2 * cadence), True
+    return spec
+
+
+def _muscle_model(design: Design, drive: Muscles, cadence: float, content: dict[str, Any]) -> Spec:
+    muscles, legs = native_muscles(design, drive, cadence), content.pop("legs", 1)
+    del content["crank"]  # held, as all of ModelOptions says already
+    spec = build_mjcf(design, cadence=cadence, legs=legs, options=ModelOptions(**content))
+    muscles.add_to(spec, LEGS[legs])
+    spec.comment += f"; {drive.driver}: {muscles.sentence}"
+    return spec
+
+
+def _moment_model(design: Design, moments: JointMoments, cadence: float, content: dict[str, Any]) -> Spec:
     crank, transmission = content.pop("crank", "servo"), content.pop("transmission", "freewheel")
     legs, timestep = content.pop("legs", 1), None
     if crank == "road":
@@ -76,7 +101,7 @@ def variant_model(design: Design, moments: JointMoments, cadence: float, options
         spec = build_mjcf(design, cadence=cadence, timestep=timestep, legs=legs, options=model)
     if crank == "brake":
         _add_brake(spec, design, moments, cadence, legs)
-    _limit_controls(spec, moments, cadence)
+    _limit_motors(spec, moments)
     return spec
 
 
@@ -98,14 +123,12 @@ def _add_brake(spec: Spec, design: Design, moments: JointMoments, cadence: float
     crank.damping = (power / cadence**2, 0.0, 0.0)
 
 
-def _limit_controls(spec: Spec, moments: JointMoments, cadence: float) -> None:
-    """Ranges of all controls: motors in N m, either way; the servo in rad/s, up to twice the cadence."""
+def _limit_motors(spec: Spec, moments: JointMoments) -> None:
+    """Ranges of the joints' motors in N m, either way."""
     for actuator in spec.actuators:
         if actuator.name == SERVO:
-            actuator.ctrlrange = (0.0, 2 * cadence)
-        else:
-            joint = next(joint for joint in JOINTS if actuator.name.endswith(joint))
-            largest = float(np.abs(torque_map(moments.of_leg(actuator.name)).table[joint]).max())
-            limit = RANGE_STEP * max(1, math.ceil(HEADROOM * largest / RANGE_STEP))
-            actuator.ctrlrange = (-limit, limit)
-        actuator.ctrllimited = True
+            continue
+        joint = next(joint for joint in JOINTS if actuator.name.endswith(joint))
+        largest = float(np.abs(torque_map(moments.of_leg(actuator.name)).table[joint]).max())
+        limit = RANGE_STEP * max(1, math.ceil(HEADROOM * largest / RANGE_STEP))
+        actuator.ctrlrange, actuator.ctrllimited = (-limit, limit), True

@@ -13,11 +13,11 @@ from fes_mj.linkage.design import BODIES
 from fes_mj.linkage.inertia import GRAVITY, BodyLoad, body_loads
 from fes_mj.linkage.joints import PerJoint
 from fes_mj.linkage.kinematics import Motion
-from fes_mj.moments.torque_map import TorqueMap
+from fes_mj.linkage.torque_source import TorqueSource
 
 
 def crank_moment(
-    motion: Motion, torque: TorqueMap, cadence: float, mass_scale: float = 1.0, gravity: float = GRAVITY
+    motion: Motion, torque: TorqueSource, cadence: float, mass_scale: float = 1.0, gravity: float = GRAVITY
 ) -> FloatArray:
     """Crank moment of one leg with its masses along a motion, N m; over a turn its mean is the quasi-static one.
 

@@ -28,7 +28,8 @@ DISCRETE, EULER, FAST, RK4 = (
 
 def model(*variants: str, name: str = "d1") -> mujoco.MjModel:
     design = fes_mj.load_design(name)
-    return variant_model(design, fes_mj.load_moments(), design.linkage.cadence, variant_options(variants)).compile()
+    drive = fes_mj.load_muscles() if "muscles" in variants else fes_mj.load_moments()
+    return variant_model(design, drive, design.linkage.cadence, variant_options(variants)).compile()
 
 
 def test_the_names_of_the_command_are_those_of_the_table() -> None:
@@ -52,6 +53,8 @@ def test_the_names_of_the_command_are_those_of_the_table() -> None:
         (("ride",), 4, 10, FAST),
         (("ride", "fixed-gear", "compatible"), 4, 10, FAST),
         (("passive", "ride"), 0, 10, FAST),
+        (("muscles",), 12, 5, DISCRETE),
+        (("muscles", "two-legs", "compatible", "bodies"), 22, 9, EULER),
     ],
 )
 def test_what_drives_and_what_integrates(
@@ -97,6 +100,10 @@ def test_moments_of_its_own_give_each_leg_its_range() -> None:
         (["two-legs", "free", "ride"], "free and ride"),
         (["brake", "free"], "brake and free"),
         (["ride", "brake"], "ride and brake"),
+        (["muscles", "passive"], "muscles and passive"),
+        (["ride", "muscles"], "ride and muscles"),
+        (["brake", "muscles"], "brake and muscles"),
+        (["free", "muscles"], "free and muscles"),
         (["fixed-gear"], "give it with ride"),
         (["fixed-gear", "brake"], "give it with ride"),
         (["mjx"], "'mjx'"),
@@ -105,6 +112,14 @@ def test_moments_of_its_own_give_each_leg_its_range() -> None:
 def test_what_makes_no_sense_is_refused(variants: list[str], said: str) -> None:
     with pytest.raises(InputError, match=said):
         variant_options(variants)
+
+
+@pytest.mark.parametrize(("drive", "variants"), [(fes_mj.load_muscles(), ()), (fes_mj.load_moments(), ("muscles",))])
+def test_muscles_and_their_variant_belong_together(
+    drive: fes_mj.Muscles | fes_mj.JointMoments, variants: tuple[str, ...]
+) -> None:
+    with pytest.raises(InputError, match="belong together"):
+        variant_model(fes_mj.load_design("d1"), drive, 6.0, variant_options(variants))
 
 
 def test_a_brake_needs_power_to_take() -> None:
