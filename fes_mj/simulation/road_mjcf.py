@@ -1,7 +1,7 @@
 """The MJCF model of the ride: a tricycle that slides along the road, its legs hung on it; nothing holds the cadence."""
 
 import math
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import mujoco
 import numpy as np
@@ -9,7 +9,6 @@ import numpy as np
 from fes_mj.linkage import kinematics
 from fes_mj.linkage.inertia import GRAVITY
 from fes_mj.linkage.legs import TWO_LEGS
-from fes_mj.riding.ride import Ride
 from fes_mj.simulation.appearance import Spec
 from fes_mj.simulation.bench import add_motor_sensors
 from fes_mj.simulation.mjcf import (
@@ -24,6 +23,9 @@ from fes_mj.simulation.mjcf import (
     joint_motion,
 )
 
+if TYPE_CHECKING:
+    from fes_mj.riding.ride import Ride  # with machine code, of which a bench needs nothing
+
 ROAD, DRIVETRAIN = "road", "drivetrain"  # the joint along the road, m; the tendon road / travel - crank, rad
 # At 60 rpm finer than on the bench. At the 250 rpm that D1 reaches on the flat it makes 1200 steps a turn, and the
 # scheme loses less than 4e-4 of the muscles' work.
@@ -35,7 +37,7 @@ _FAR = 1e6  # rad, an upper limit that is never reached: MuJoCo has no one-sided
 
 
 def build_road_mjcf(
-    ride: Ride,
+    ride: "Ride",
     timestep: float = TIMESTEP,
     *,
     integrator: str = "discrete",
@@ -75,7 +77,7 @@ def build_road_mjcf(
     return spec
 
 
-def _add_drivetrain(spec: Spec, ride: Ride) -> None:
+def _add_drivetrain(spec: Spec, ride: "Ride") -> None:
     tendon = spec.add_tendon(name=DRIVETRAIN)
     tendon.wrap_joint(ROAD, 1 / ride.travel)
     tendon.wrap_joint("crank", -1.0)
@@ -89,7 +91,7 @@ def _add_drivetrain(spec: Spec, ride: Ride) -> None:
         tendon.solref_limit, tendon.solimp_limit = LOOP_SOLREF, LOOP_SOLIMP
 
 
-def _add_sensors(spec: Spec, ride: Ride, driven: bool, compatible: bool) -> None:
+def _add_sensors(spec: Spec, ride: "Ride", driven: bool, compatible: bool) -> None:
     kinds, objects = mujoco.mjtSensor, mujoco.mjtObj
     for name, kind in ((f"{ROAD}_angle", kinds.mjSENS_JOINTPOS), (f"{ROAD}_speed", kinds.mjSENS_JOINTVEL)):
         spec.add_sensor(name=name, type=kind, objtype=objects.mjOBJ_JOINT, objname=ROAD)
@@ -102,7 +104,7 @@ def _add_sensors(spec: Spec, ride: Ride, driven: bool, compatible: bool) -> None
 
 
 def start_state(
-    ride: Ride, before: float = 0.0, gain: dict[str, float] | None = None
+    ride: "Ride", before: float = 0.0, gain: dict[str, float] | None = None
 ) -> dict[str, tuple[float, float]]:
     """Position of every joint, and its mean speed over the time `before` (s) that; with none its speed then.
 

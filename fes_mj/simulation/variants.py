@@ -15,7 +15,6 @@ from fes_mj.linkage.legs import LEGS, TWO_LEGS
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.torque_map import torque_map
 from fes_mj.muscles.drive import Muscles
-from fes_mj.riding.ride import Ride
 from fes_mj.simulation.appearance import Spec
 from fes_mj.simulation.mjcf import INTEGRATORS, SERVO, ModelOptions, build_mjcf
 from fes_mj.simulation.native_muscles import native_muscles
@@ -92,6 +91,8 @@ def _moment_model(design: Design, moments: JointMoments, cadence: float, content
     crank, transmission = content.pop("crank", "servo"), content.pop("transmission", "freewheel")
     legs, timestep = content.pop("legs", 1), None
     if crank == "road":
+        from fes_mj.riding.ride import Ride  # with machine code, of which other variants need nothing
+
         ride = Ride(design, moments, transmission=transmission)
         spec = build_road_mjcf(replace(ride, launch=cadence * ride.travel), integrator=LADEN, **content)
     else:
@@ -118,6 +119,8 @@ def _add_brake(spec: Spec, design: Design, moments: JointMoments, cadence: float
             "nothing for a brake to take; leave out the variant brake, or give free"
         )
     spec.option.integrator = INTEGRATORS[LADEN]
+    from fes_mj.riding.ride import Ride
+
     ride, crank = Ride(design, moments), spec.joint("crank")
     crank.armature = ride.load.inertia * ride.travel**2
     crank.damping = (power / cadence**2, 0.0, 0.0)

@@ -9,8 +9,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from fes_mj.crosscheck.turn_case import Case
 from fes_mj.moments.joint_moments import JointMoments
-from fes_mj.riding.ride import TRANSMISSIONS, Ride, Road
-from fes_mj.riding.stimulated import TIMINGS, stimulated_rider
 from fes_mj.verification import energy
 from fes_mj.verification.references import Curves, differences, exact_curves
 from fes_mj.verification.refinement import refine
@@ -18,7 +16,7 @@ from fes_mj.verification.refinement import refine
 if TYPE_CHECKING:
     from fes_mj.crosscheck import ride_case
 
-STEEP = Road(slope=0.15)  # no leg climbs it: the tricycle stops and rolls back
+STEEP = 0.15  # no leg climbs it: the tricycle stops and rolls back
 STEEP_DURATION = 3.0  # s
 RIDE_DURATION = 5.0  # s: some eight turns; studies/ride_verification.py rides a minute
 # Of a summary, what a table of runs shows.
@@ -67,7 +65,9 @@ class VerificationCase(Case):
     @cached_property
     def rides(self) -> "list[ride_case.RideCase]":
         """Short rides launched at the speed of the cadence: flat with either transmission, and rolling back."""
-        from fes_mj.crosscheck.ride_case import RideCase  # needs SciPy, which a turn does not
+        from fes_mj.crosscheck.ride_case import RideCase  # needs SciPy and numba, which a turn does not
+        from fes_mj.riding.ride import TRANSMISSIONS, Ride, Road
+        from fes_mj.riding.stimulated import TIMINGS, stimulated_rider
 
         if isinstance(self.drive, JointMoments):
             ride = Ride(self.design, self.drive, duration=RIDE_DURATION)
@@ -77,7 +77,7 @@ class VerificationCase(Case):
             return []
         ride = replace(ride, launch=self.cadence * ride.travel)
         flat = [replace(ride, transmission=kind) for kind in TRANSMISSIONS]
-        steep = replace(ride, transmission="fixed", road=STEEP, duration=STEEP_DURATION)
+        steep = replace(ride, transmission="fixed", road=Road(slope=STEEP), duration=STEEP_DURATION)
         kind = type("RideCase", (RideCase,), dict(self.ride_steps))
         return [kind(one) for one in (*flat, steep)]
 

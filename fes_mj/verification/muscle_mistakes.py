@@ -6,6 +6,7 @@ from dataclasses import replace
 from functools import cached_property
 from typing import Any, cast
 
+from fes_mj.common.machine_code import in_lists
 from fes_mj.crosscheck.pipeline import Pipeline
 from fes_mj.linkage.turning import turning
 from fes_mj.muscles.anatomy import GROUPS, anatomy
@@ -31,7 +32,7 @@ def in_leg(change: Callable[[LegMuscles], dict[str, Any]]) -> Steps:
 
     def leg(torque: MuscleTorque) -> LegMuscles:
         right = LegMuscles.of(torque.riders, torque.design.rider)
-        return right._replace(**change(right)).in_lists
+        return in_lists(right._replace(**change(right)))
 
     return in_muscles(leg=property(leg))
 
@@ -43,7 +44,7 @@ def in_rider(**changes: float) -> Steps:
         values = dict(torque.riders.values)
         changed = {name: factor * values[name] for name, factor in changes.items()}
         other = replace(torque.riders, values=values | changed)
-        return LegMuscles.of(other, torque.design.rider).in_lists
+        return in_lists(LegMuscles.of(other, torque.design.rider))
 
     return in_muscles(leg=property(leg))
 
@@ -76,7 +77,7 @@ def at_rates(factor_knee: float, factor_hip: float) -> Callable[..., tuple[float
 
 def unscaled(torque: MuscleTorque) -> LegMuscles:
     muscles, right = anatomy(), LegMuscles.of(torque.riders, torque.design.rider)
-    return right._replace(force=right.force / muscles.length_scale(torque.design.rider).ravel()).in_lists
+    return in_lists(right._replace(force=right.force / muscles.length_scale(torque.design.rider).ravel()))
 
 
 def unshifted(torque: MuscleTorque, _: float) -> Stimulator:
