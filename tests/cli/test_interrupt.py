@@ -138,11 +138,30 @@ def test_too_little_memory_is_no_disagreement() -> None:
 
 
 STUDY = '[study]\nchunk = 200\n[grid]\ndesign = ["d1", "r1"]\n[sample]\nsize = 400\nR2 = [0.03, 0.16]\n'
+# `fes_mj reproduce` of one page and one figure
+REDUCED = """
+from types import SimpleNamespace
+from fes_mj import cli, load_design, load_moments, quasi_static
+from fes_mj.paper import figures, identification, reproduce
+
+runs = SimpleNamespace(known=SimpleNamespace(hyperparameters=SimpleNamespace()), dynamic={})
+designs = map(load_design, ("trt", "r1", "r2", "d1", "d2"))
+runs.static = {(design.name, "p1p2"): quasi_static(design, load_moments()) for design in designs}
+reproduce.run_all = lambda silent: runs
+reproduce._pages = lambda runs: {"identification": [identification.ranges_table()]}
+figures.FIGURES = {name: figures.FIGURES[name] for name in ["figure-10-design-space"]}
+cli.main()
+"""
+FES_MJ = ("-m", "fes_mj")
 RUNS = {
-    "sweep": ("sweep", "s.toml", "-o", "out", "--jobs", "2", "-q"),
-    "optimize": ("optimize", "crt", "-o", "out/best.toml", "--budget", "2000", "--searches", "2", "--jobs", "2", "-q"),
-    "report": ("validate", "d1", "--quick", "-q", "--report", "out/report.html"),
-    "video": ("simulate", "d1", "-q", "--render", "out/d1.mp4"),
+    "sweep": (*FES_MJ, "sweep", "s.toml", "-o", "out", "--jobs", "2", "-q"),
+    "optimize": (
+        *(*FES_MJ, "optimize", "crt", "-o", "out/best.toml"),
+        *("--budget", "2000", "--searches", "2", "--jobs", "2", "-q"),
+    ),
+    "reproduce": ("-c", REDUCED, "reproduce", "-q", "--out", "out"),
+    "report": (*FES_MJ, "validate", "d1", "--quick", "-q", "--report", "out/report.html"),
+    "video": (*FES_MJ, "simulate", "d1", "-q", "--render", "out/d1.mp4"),
 }
 
 
@@ -151,7 +170,7 @@ RUNS = {
 def test_a_signal_at_any_time_ends_in_its_code_and_leaves_nothing_half(name: str, part: float, tmp_path: Path) -> None:
     """At a part of the time that the whole run takes; what is there afterwards is whole, and no traceback is shown."""
     (tmp_path / "s.toml").write_text(STUDY)
-    command = [sys.executable, "-m", "fes_mj", *RUNS[name]]
+    command = [sys.executable, *RUNS[name]]
     if name != "sweep":
         (tmp_path / "out").mkdir()
     begin = time.monotonic()
