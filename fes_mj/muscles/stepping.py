@@ -1,5 +1,6 @@
 """One leg's stimulator and muscles, stepped through time: what they do in a simulation, by its own joint angles."""
 
+import math
 from collections import deque
 from collections.abc import Callable, Sequence
 from itertools import pairwise, repeat
@@ -50,18 +51,20 @@ def _delay(leg: LegMuscles, timestep: float) -> tuple[int, float]:
     return int(steps), steps % 1
 
 
-def steady(leg: LegMuscles, timestep: float, turn: Sequence[Sequence[float]]) -> Memory:
+def steady(leg: LegMuscles, timestep: float, turn: Sequence[Sequence[float]], start: Sequence[float]) -> Memory:
     """What muscles remember at the end of a turn that has always been the same.
 
-    turn: stimulation that is asked for in each of its steps.
+    turn: stimulation that is asked for in each of its steps. start: activation, as well as it is known; it saves turns.
     """
     whole, part = _delay(leg, timestep)
     rising, falling = weights(timestep, leg.rise), weights(timestep, leg.fall)
     count, arrived, activation = len(turn), [], []
-    for asked in zip(*turn, strict=True):  # group after group: a fifth of the time of a stepper's own steps
+    for value, *asked in zip(
+        start, *turn, strict=True
+    ):  # group after group: a fifth of the time of a stepper's own steps
         late = [asked[(row - whole - 1) % count] for row in range(count + 1)]
         felt = [part * old + (1 - part) * new for old, new in pairwise(late)]
-        value, before = 0.0, 1.0
+        before = math.inf
         while abs(value - before) > _SETTLED:
             before = value
             for earlier, now in pairwise([felt[-1], *felt]):

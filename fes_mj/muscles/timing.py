@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from fes_mj.common.arrays import FloatArray
+from fes_mj.common.arrays import ComplexArray, FloatArray
 from fes_mj.common.errors import InputError
 from fes_mj.muscles.activation import answer, trapezium
 from fes_mj.muscles.prior import ramp
@@ -21,6 +21,7 @@ STEP = 5  # deg, of on-angles and widths
 DUTY = 100 / 360  # largest share of the turn in which a group is stimulated
 LEAST_SHARE = 0.02  # of the expected power of all groups; for less a group is not worth its stimulation
 _STARTS = POINTS // STEP
+_MEMBERS = 100  # at once: the answers of more to every width leave the processor's cache
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,6 +81,26 @@ def best_windows(
     Raises InputError for a duty below that of a window of 5 deg, or above 1.
     """
     widths = widths_up_to(duty)
+    blocks = [slice(first, first + _MEMBERS) for first in range(0, len(riders), _MEMBERS)]
+    spectra = [_spectra(power[:, block], riders.taken(block), cadence, widths, each_its_own) for block in blocks]
+    together = np.concatenate(spectra, axis=1)
+    if not each_its_own:
+        together = together.sum(axis=1, keepdims=True) / len(riders)
+    # (groups, members, designs, widths, starts); the inverse divides by the number of starts
+    expected = np.fft.irfft(together, _STARTS) * (_STARTS / POINTS**2)
+    flat = expected.reshape(*expected.shape[:-2], -1)
+    best, largest = flat.argmax(axis=-1), flat.max(axis=-1)
+    worth = largest > LEAST_SHARE * np.maximum(largest, 0).sum(axis=0)
+    width, start = np.unravel_index(best, expected.shape[-2:])
+    windows = Windows(np.where(worth, STEP * start, 0.0), np.where(worth, widths[width], 0.0))
+    return windows, (worth * largest).sum(axis=0)
+
+
+def _spectra(power: FloatArray, riders: Riders, cadence: Any, widths: FloatArray, each_its_own: bool) -> ComplexArray:
+    """Of the power of every window over its on-angle, a sum over the riders or of each.
+
+    Shape (groups, members or 1, designs, widths, harmonics).
+    """
     # in single precision, which tells windows apart by 1e-6 of the power
     single, cadence = np.float32, np.reshape(cadence, (-1, 1))
     since_on = (ANGLES - cadence * riders["delay_s"]).astype(single)
@@ -89,13 +110,4 @@ def best_windows(
     spectra = [np.fft.rfft(values)[..., : _STARTS // 2] for values in (answers, power.astype(single))]
     members = "m" if each_its_own else ""
     together = np.einsum(f"wmdk,gmdk->g{members}dwk", np.conj(spectra[0]), spectra[1], optimize=True)
-    if not each_its_own:
-        together = together[:, None] / power.shape[1]
-    # (groups, members, designs, widths, starts); the inverse divides by the number of starts
-    expected = np.fft.irfft(together, _STARTS) * (_STARTS / POINTS**2)
-    flat = expected.reshape(*expected.shape[:-2], -1)
-    best, largest = flat.argmax(axis=-1), flat.max(axis=-1)
-    worth = largest > LEAST_SHARE * np.maximum(largest, 0).sum(axis=0)
-    width, start = np.unravel_index(best, expected.shape[-2:])
-    windows = Windows(np.where(worth, STEP * start, 0.0), np.where(worth, widths[width], 0.0))
-    return windows, (worth * largest).sum(axis=0)
+    return np.asarray(together if each_its_own else together[:, None])

@@ -142,5 +142,6 @@ class MuscleTorque:
             motion = kinematics.solve(self.design, angle - lag)
             rates = motion.joint_rate.map(lambda rate: self.cadence * rate)
             states = zip(*(column.tolist() for column in (angle, *motion.joint_angle, *rates)), strict=True)
-            self._memories[lag, timestep] = steady(self.leg, timestep, [ask(*state) for state in states])
+            start = self.activation(np.array([-lag]))[:, 0].tolist()
+            self._memories[lag, timestep] = steady(self.leg, timestep, [ask(*state) for state in states], start)
         return self._memories[lag, timestep]
