@@ -5,11 +5,14 @@ one leg, muscle after muscle. `step` has them in machine code, which is why none
 """
 
 import math
-from typing import Any, NamedTuple
+import operator
+from itertools import dropwhile
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 
 from fes_mj.common.arrays import BoolArray, FloatArray, IntArray
+from fes_mj.common.machine_code import in_lists
 from fes_mj.linkage.design import Rider
 from fes_mj.muscles.anatomy import anatomy
 from fes_mj.muscles.contraction import CURVATURE, LENGTHENING, PLATEAU, WIDTH
@@ -23,17 +26,14 @@ class LegMuscles(NamedTuple):
     """The muscles of one rider's leg; arrays by muscle, shape (muscles,).
 
     group: number in GROUPS. lengths: m, coefficients by powers of hip, then knee flexion from `straight` where
-    knee_inside, elsewhere of knee, then hip, shape (muscles, powers, powers); rows: how many there are, and orders, how
-    many each has, shape (muscles, powers). straight: knee and hip angle from
-    which flexion counts there, rad. force: N, of the rider's muscles, times how much longer these are than the
-    lengths say. optimal, slack: m. thickness: m, of the fibres. max_speed: m/s. rise, fall, delay: s.
+    knee_inside, elsewhere of knee, then hip, highest first, shape (muscles, powers, powers). straight: knee and hip
+    angle from which flexion counts there, rad. force: N, of the rider's muscles, times how much longer these are than
+    the lengths say. optimal, slack: m. thickness: m, of the fibres. max_speed: m/s. rise, fall, delay: s.
     """
 
     group: IntArray
     knee_inside: BoolArray
     lengths: FloatArray
-    orders: IntArray
-    rows: IntArray
     straight: FloatArray
     force: FloatArray
     optimal: FloatArray
@@ -52,18 +52,15 @@ class LegMuscles(NamedTuple):
         lengths = np.zeros((len(muscles.names), *[muscles.lengths.degree + 1] * 2))
         for (hip, knee), column in zip(powers, muscles.lengths.coefficients.T, strict=True):
             lengths[:, knee, hip] = column
-        used = lengths != 0
-        knee_inside = ~used[:, :, 1:].any(axis=(1, 2))  # of muscles that do not pass the hip, so that all is in one row
+        # of muscles that do not pass the hip, so that all is in one row
+        knee_inside = np.logical_not(lengths[:, :, 1:].any(axis=(1, 2)))
         lengths[knee_inside] = np.swapaxes(lengths[knee_inside], 1, 2)
-        used = lengths != 0
         scale = muscles.length_scale(rider).ravel()
         offset = np.array([0.0, np.radians(value["hip_offset_deg"])])
         return cls(
             group=muscles.group,
             knee_inside=knee_inside,
-            lengths=lengths,
-            orders=_count(used),
-            rows=_count(used.any(axis=2)),
+            lengths=lengths[:, ::-1, ::-1].copy(),
             straight=np.pi + offset - CENTRE[::-1],
             force=muscles.force * member.strength(muscles).ravel() * scale,
             optimal=muscles.optimal,
@@ -75,10 +72,11 @@ class LegMuscles(NamedTuple):
             delay=value["delay_s"],
         )
 
-
-def _count(used: BoolArray) -> IntArray:
-    """One more than the last place that is used along the last axis; 0 where none is."""
-    return np.asarray(np.where(used, np.arange(1, used.shape[-1] + 1), 0).max(axis=-1))
+    @property
+    def in_lists(self) -> "LegMuscles":
+        """The same for Python: lists, without the zeros that stand before a polynomial's highest powers."""
+        rows = [[[*dropwhile(operator.not_, row)] for row in lengths] for lengths in self.lengths.tolist()]
+        return in_lists(self._replace(lengths=cast("Any", [[*dropwhile(operator.not_, muscle)] for muscle in rows])))
 
 
 class Stimulus(NamedTuple):
@@ -139,30 +137,30 @@ def joint_moments(
     """
     bent_knee, bent_hip = leg.straight[0] - knee, leg.straight[1] - hip
     knee_moment = hip_moment = 0.0
-    for muscle in range(len(leg.group)):
-        active = activation[leg.group[muscle]]
+    # names of their own for all of a muscle: Python looks them up faster than places in a tuple's lists
+    columns = (leg.group, leg.knee_inside, leg.lengths, leg.force, leg.optimal, leg.slack, leg.thickness, leg.max_speed)
+    for group, knee_inside, lengths, strongest, optimal, slack, thickness, max_speed in zip(*columns):  # noqa: B905
+        active = activation[group]
         if active <= 0:
             continue
         # Horner's rule for the polynomial and its derivatives, the moment arms
-        knee_inside, rows, orders = leg.knee_inside[muscle], leg.lengths[muscle], leg.orders[muscle]
         inner, outer = (bent_knee, bent_hip) if knee_inside else (bent_hip, bent_knee)
         length = by_outer = by_inner = 0.0
-        for power in range(leg.rows[muscle] - 1, -1, -1):
+        for row in lengths:
             value = slope = 0.0
-            row = rows[power]
-            for order in range(orders[power] - 1, -1, -1):
+            for coefficient in row:
                 slope = slope * inner + value
-                value = value * inner + row[order]
+                value = value * inner + coefficient
             by_outer = by_outer * outer + length
             length = length * outer + value
             by_inner = by_inner * outer + slope
         by_knee, by_hip = (by_inner, by_outer) if knee_inside else (by_outer, by_inner)
-        along, thickness, optimal = length - leg.slack[muscle], leg.thickness[muscle], leg.optimal[muscle]
+        along = length - slack
         if along <= 0:
             continue
         fibre = math.sqrt(along * along + thickness * thickness)
         cosine = along / fibre
-        shortening = (by_knee * knee_rate + by_hip * hip_rate) * cosine / leg.max_speed[muscle]
+        shortening = (by_knee * knee_rate + by_hip * hip_rate) * cosine / max_speed
         if shortening >= 1:
             continue
         if shortening >= 0:
@@ -171,7 +169,7 @@ def joint_moments(
             lengthening = max(shortening, -1.0)
             factor = 1 + lengthening * (PLATEAU - 1) * (LENGTHENING + 1) / (LENGTHENING * lengthening - 1)
         apart = (fibre / optimal - 1) / WIDTH
-        force = leg.force[muscle] * active * math.exp(-apart * apart) * factor * cosine
+        force = strongest * active * math.exp(-apart * apart) * factor * cosine
         knee_moment += force * by_knee
         hip_moment += force * by_hip
     return knee_moment, hip_moment

@@ -102,7 +102,7 @@ class MuscleTorque:
     @cached_property
     def leg(self) -> LegMuscles:
         """The rider's muscles, in lists."""
-        return in_lists(LegMuscles.of(self.riders, self.design.rider))
+        return LegMuscles.of(self.riders, self.design.rider).in_lists
 
     def stimulator(self, lag: float) -> Stimulator:
         """What asks for stimulation in a leg that trails by this crank angle, rad: crank, or joints that move so."""

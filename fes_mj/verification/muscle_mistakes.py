@@ -6,7 +6,6 @@ from dataclasses import replace
 from functools import cached_property
 from typing import Any, cast
 
-from fes_mj.common.machine_code import in_lists
 from fes_mj.crosscheck.pipeline import Pipeline
 from fes_mj.linkage.turning import turning
 from fes_mj.muscles.anatomy import GROUPS, anatomy
@@ -32,7 +31,7 @@ def in_leg(change: Callable[[LegMuscles], dict[str, Any]]) -> Steps:
 
     def leg(torque: MuscleTorque) -> LegMuscles:
         right = LegMuscles.of(torque.riders, torque.design.rider)
-        return in_lists(right._replace(**change(right)))
+        return right._replace(**change(right)).in_lists
 
     return in_muscles(leg=property(leg))
 
@@ -44,7 +43,7 @@ def in_rider(**changes: float) -> Steps:
         values = dict(torque.riders.values)
         changed = {name: factor * values[name] for name, factor in changes.items()}
         other = replace(torque.riders, values=values | changed)
-        return in_lists(LegMuscles.of(other, torque.design.rider))
+        return LegMuscles.of(other, torque.design.rider).in_lists
 
     return in_muscles(leg=property(leg))
 
@@ -77,7 +76,7 @@ def at_rates(factor_knee: float, factor_hip: float) -> Callable[..., tuple[float
 
 def unscaled(torque: MuscleTorque) -> LegMuscles:
     muscles, right = anatomy(), LegMuscles.of(torque.riders, torque.design.rider)
-    return in_lists(right._replace(force=right.force / muscles.length_scale(torque.design.rider).ravel()))
+    return right._replace(force=right.force / muscles.length_scale(torque.design.rider).ravel()).in_lists
 
 
 def unshifted(torque: MuscleTorque, _: float) -> Stimulator:

@@ -30,7 +30,7 @@ def test_moments_are_those_of_the_turn(name, riders):
     motion, cadence = kinematics.solve(design, ANGLES[::20]), design.linkage.cadence
     for row in (0, 5):
         pulled = pull(riders.taken([row]), motion, cadence).moment
-        leg = in_lists(LegMuscles.of(riders.taken([row]), design.rider))
+        leg = LegMuscles.of(riders.taken([row]), design.rider).in_lists
         for group in GROUP_NUMBERS:
             alone = curves(leg, motion, cadence, np.eye(len(GROUPS))[group])
             for joint, curve in zip(("knee", "hip"), alone, strict=True):
@@ -41,7 +41,7 @@ def test_moments_are_those_of_the_turn(name, riders):
 def test_moments_are_the_groups_together(riders):
     design = load_design("d2")
     motion = kinematics.solve(design, ANGLES[::60])
-    leg, share = in_lists(LegMuscles.of(riders.taken([2]), design.rider)), np.array([0.3, 0.5, 0.7])
+    leg, share = LegMuscles.of(riders.taken([2]), design.rider).in_lists, np.array([0.3, 0.5, 0.7])
     apart = [curves(leg, motion, 9.0, row) for row in np.diag(share)]
     assert curves(leg, motion, 9.0, share) == pytest.approx(np.sum(apart, axis=0), rel=1e-12)
 
@@ -54,7 +54,9 @@ def test_fibres_do_the_work_that_joints_do(riders):
 
     def length(muscle, seconds):
         bent = leg.straight - np.array([knee, hip]) - seconds * rates
-        return np.polynomial.polynomial.polyval2d(*bent[:: 1 - 2 * leg.knee_inside[muscle]], leg.lengths[muscle])
+        return np.polynomial.polynomial.polyval2d(
+            *bent[:: 1 - 2 * leg.knee_inside[muscle]], leg.lengths[muscle, ::-1, ::-1]
+        )
 
     power = 0.0
     for muscle in range(len(leg.group)):
@@ -63,18 +65,17 @@ def test_fibres_do_the_work_that_joints_do(riders):
         state = np.array([length(muscle, 0)]), np.array([speed])
         pulled, _ = tension(*state, optimal, leg.slack[muscle], pennation, leg.max_speed[muscle] / optimal)
         power -= leg.force[muscle] * pulled[0] * speed
-    moments = joint_moments(in_lists(leg), np.ones(len(GROUPS)), knee, hip, *rates.tolist())
+    moments = joint_moments(leg.in_lists, np.ones(len(GROUPS)), knee, hip, *rates.tolist())
     assert moments @ rates == pytest.approx(power, rel=1e-6)
 
 
 def test_a_muscle_is_hills_at_its_ends():
     """One muscle with a moment arm of 5 cm at the knee, at its optimal length, and slack."""
-    knee_alone = np.array([[[0.4, 0.05]]])
+    knee_alone = np.array([[[0.05, 0.4]]])
     columns = np.ones((4, 1)) * [[100.0], [0.1], [0.3], [0.0]]
-    one, none = np.ones(1, int), np.zeros(1, int)
-    inside, orders = np.ones(1, bool), np.array([[2]])
-    leg = LegMuscles(none, inside, knee_alone, orders, one, np.zeros(2), *columns, np.array([0.8]), 0.1, 0.1, 0.0)
-    leg = in_lists(leg)
+    group, inside = np.zeros(1, int), np.ones(1, bool)
+    leg = LegMuscles(group, inside, knee_alone, np.zeros(2), *columns, np.array([0.8]), 0.1, 0.1, 0.0)
+    leg = leg.in_lists
 
     def pulled(knee, shortening):
         return joint_moments(leg, [1.0], knee, 1.0, shortening / 0.05, 0.0)[0] / 100 / 0.05
