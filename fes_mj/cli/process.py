@@ -6,6 +6,7 @@ import io
 import os
 import signal
 import sys
+import threading
 from typing import TYPE_CHECKING, NoReturn, TextIO
 
 from fes_mj.common.errors import InputError
@@ -52,6 +53,7 @@ def prepare() -> None:
             os.open(os.devnull, os.O_RDWR)
     if sys.platform != "win32":  # whose console takes text, not bytes
         sys.stdout, sys.stderr = _stream(1, sys.stdout, "standard output"), _stream(2, sys.stderr)
+    sys.unraisablehook = _unraisable
     for name, default in (
         ("SIGINT", signal.default_int_handler),
         ("SIGTERM", signal.SIG_DFL),
@@ -74,6 +76,14 @@ def _interrupt(number: int, _: FrameType | None) -> None:
         raise KeyboardInterrupt(number)
     if len(_received) > 2:
         os._exit(128 + _received[0])
+
+
+def _unraisable(lost: sys.UnraisableHookArgs) -> None:
+    """Python drops what is raised while it clears up an object; a signal that came just then is sent once more."""
+    if isinstance(lost.exc_value, KeyboardInterrupt) and _received:
+        threading.Timer(0.01, os.kill, (os.getpid(), _received.pop())).start()
+    else:
+        sys.__unraisablehook__(lost)
 
 
 def leave(code: int) -> NoReturn:

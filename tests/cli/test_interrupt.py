@@ -121,6 +121,33 @@ def test_an_error_that_somebody_made_of_an_interruption_is_one(how: signal.Signa
     assert (done.returncode, done.stderr) == (128 + how, "fes_mj: interrupted; nothing was left half-written\n")
 
 
+DROPS = """
+import signal, sys, time, weakref
+from fes_mj import cli
+from fes_mj.cli import app
+
+class Thing: pass
+
+def waits(*_, **__):
+    thing = Thing()
+    watched = weakref.ref(thing, lambda _: signal.raise_signal(int(sys.argv[1])))
+    del thing
+    time.sleep(60)
+
+app.app = waits
+cli.main()
+"""
+
+
+@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_that_python_drops_comes_again(how: signal.Signals) -> None:
+    """Nothing can be raised where Python clears up an object; it would say so and go on."""
+    done = subprocess.run(
+        [sys.executable, "-c", DROPS, str(int(how))], capture_output=True, text=True, check=False, timeout=PATIENCE
+    )
+    assert (done.returncode, done.stderr) == (128 + how, "fes_mj: interrupted; nothing was left half-written\n")
+
+
 def test_an_error_without_a_signal_stays_what_it_is() -> None:
     done = subprocess.run(
         [sys.executable, "-c", WRAPS, "ImportError", "0", "simulate", "d1"], capture_output=True, check=False

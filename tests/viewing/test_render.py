@@ -127,7 +127,7 @@ def test_without_ffmpeg_the_message_names_the_extra(
 def test_a_ride_plays_in_true_time_and_the_road_passes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("fes_mj.viewing.render.LONGEST", 0.5)
     path = tmp_path / "ride.mp4"
-    assert run(["ride", "r1", "--duration", "2", "-q", "--render", str(path)]) == 0
+    assert run(["ride", "r1", "--drive", "moments", "--duration", "2", "-q", "--render", str(path)]) == 0
     about, frames = frames_of(path)
     assert "30 fps" in about
     assert len(frames) == 15  # half a second
