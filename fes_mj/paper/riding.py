@@ -20,7 +20,7 @@ from fes_mj.common.units import KMH, RPM
 from fes_mj.crosscheck.ride_case import RideCase
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.design_file import DESIGNS, load_design
-from fes_mj.linkage.variables import replaced
+from fes_mj.linkage.variables import replaced, runnable
 from fes_mj.moments.files import load_moments
 from fes_mj.moments.joint_moments import GROUPS
 from fes_mj.moments.uncertainty import with_sd
@@ -36,7 +36,7 @@ DRAWS = 24  # of all; a standard deviation of so many is known to a seventh of i
 START_DRAWS = 4  # of these, in the search for starts, which takes some thirty times as long as a ride; to two fifths
 ANGLES = 8  # crank angles over half a turn, from which it is tried to start
 SHORT = 20.0  # s: what rides so long from rest goes on
-RATIOS = np.geomspace(0.125, 4.0, 21)  # times the design's own gear ratio
+RATIOS = np.geomspace(0.125, 4.0, 21)  # times the design's own gear ratio; of these those that can be run
 SLOPES = (0.0, 0.02)  # on which the best gear ratio is sought
 AT_END = " (end of the range)"
 SEED = 2007
@@ -109,6 +109,8 @@ def _riding(design: Design, group: str, muscles: Muscles, transmission: str) -> 
     geared = []
     for ratio in RATIOS * design.linkage.gear_ratio:
         other = design.with_linkage(gear_ratio=float(ratio))
+        if not runnable(other.linkage.cadence):
+            continue
         set_at = min(float(other.linkage.cadence), FASTEST_CADENCE)  # beyond it no gear counts
         geared.append(replace(best, design=other, drive=stimulated_rider(muscles, other, set_at)))
     on_slopes = {slope: [replace(ride, road=Road(slope=slope)) for ride in geared] for slope in SLOPES}
