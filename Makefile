@@ -72,6 +72,8 @@ pictures: $(VENV)/.ready reproduce
 	$(BIN)/python -m tools.picture_demo
 	$(BIN)/python -m tools.picture_explore
 	$(BIN)/python -m studies.ripple --picture
+	$(BIN)/python -m studies.muscles
+	$(BIN)/python -m studies.published
 	$(BIN)/python -m studies.ride_env
 	$(BIN)/python -m tools.picture_structure
 

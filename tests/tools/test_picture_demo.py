@@ -12,6 +12,8 @@ MADE = {
     "docs/images/explore.png": "tools.picture_explore",
     "mjcf/*/*.png": "tools/make_models.py --pictures",
     "results/figures/*.png": "reproduce",
+    "results/muscles-*.png": "studies.muscles",
+    "results/published.png": "studies.published",
     "results/ride-environment.png": "studies.ride_env",
     "results/optimization/ripple.png": "studies.ripple --picture",
 }

@@ -53,7 +53,8 @@ def test_a_page_that_is_behind_is_noticed() -> None:
 
 def test_the_verification_has_todays_checks_and_limits() -> None:
     checks = json.loads((RESULTS / "verification.json").read_text(encoding="utf-8"))["checks"]
-    stated = {name: (row.kind, row.limit, row.unit) for name, row in definitions().items()}
+    rows = {name: row for name, row in definitions().items() if not name.startswith("muscle_")}  # of another page
+    stated = {name: (row.kind, row.limit, row.unit) for name, row in rows.items()}
     assert {check["name"]: (check["kind"], check["limit"], check["unit"]) for check in checks} == stated
 
 
