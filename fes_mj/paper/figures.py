@@ -166,13 +166,20 @@ def riding(runs: Runs) -> Figure:
     for ax, (title, values_of) in zip(axes.flat, RIDING.items(), strict=True):
         for row, (group, transmission) in enumerate(product(GROUPS, TRANSMISSIONS)):
             rides = [ride for ride in runs.rides if (ride.group, ride.transmission) == (group, transmission)]
-            values = np.array([values_of(ride) for ride in rides], float)  # None becomes NaN
+            values = [np.array(values_of(ride), float) for ride in rides]  # None becomes NaN
             places = np.arange(len(rides)) + 0.18 * (row - 1.5)
-            best, drawn = values[:, 0], values[:, 1:]
             look = {"color": MOMENTS[GROUPS.index(group)], "ms": 5}
             face = look["color"] if transmission == "fixed" else "white"
-            ax.plot(np.repeat(places, drawn.shape[1]), drawn.ravel(), ".", color=look["color"], ms=2, alpha=0.5)
-            ax.plot(places, best, "o", markerfacecolor=face, label=f"{group.upper()}, {transmission}", **look)
+            for place, (_, *drawn) in zip(places, values, strict=True):
+                ax.plot(np.full(len(drawn), place), drawn, ".", color=look["color"], ms=2, alpha=0.5)
+            ax.plot(
+                places,
+                [best for best, *_ in values],
+                "o",
+                markerfacecolor=face,
+                label=f"{group.upper()}, {transmission}",
+                **look,
+            )
         ax.set(xticks=range(len(rides)), xticklabels=[ride.design.name.upper() for ride in rides])
         ax.set_title(title, loc="left", fontsize=9, weight="bold")
         ax.axhline(0, color="black", lw=0.7)
