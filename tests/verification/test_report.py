@@ -66,7 +66,7 @@ def test_the_report_opens_with_the_verdict_and_shows_everything(report: dict[str
     assert page.count["svg"] == 2 + 2 + 1  # power and refinement of two groups, the chain
     assert page.count["video"] == 1
     assert "data:video/mp4;base64,bm90IGEgcmVhbCB2aWRlbw==" in report["html"]
-    assert [name for name in definitions() if name not in text] == ["muscle_moments", "muscle_activation"]
+    assert {name for name in definitions() if name not in text} == {"muscle_moments", "muscle_activation"}
     assert "knee moment on the shank" in text
     assert "(to 10 W at least)" in text  # units keep their capitals
     assert text.count("exact, mW") == 2  # what the curves that coincide differ by
