@@ -5,8 +5,9 @@ import signal
 import subprocess
 import sys
 from collections.abc import Iterable, Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -103,8 +104,10 @@ def write_video(path: Path, frames: Iterable[Picture], count: int, quiet: bool =
     ):
         try:
             with ExitStack() as writing:
+                writer = mediapy.VideoWriter(once, shape, **look)
+                writing.callback(_close_pipes, writer)
                 with _held_signals():
-                    writer = writing.enter_context(mediapy.VideoWriter(once, shape, **look))
+                    writing.enter_context(writer)
                 for frame in frames:
                     writer.add_image(frame)
                     advance(1)
@@ -115,6 +118,13 @@ def write_video(path: Path, frames: Iterable[Picture], count: int, quiet: bool =
             message = error.stderr if isinstance(error, subprocess.CalledProcessError) else str(error)
             reason = message.strip().rpartition("] ")[2].strip()
             raise InputError(f"{path}: cannot be written: the encoder stopped: {reason}") from None
+
+
+def _close_pipes(writer: Any) -> None:
+    """Of an encoder that failed: mediapy leaves them open."""
+    for stream in (writer._proc.stdin, writer._proc.stderr) if writer._proc else ():
+        with suppress(OSError):
+            stream.close()
 
 
 @contextmanager
