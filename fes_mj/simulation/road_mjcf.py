@@ -24,7 +24,7 @@ from fes_mj.simulation.mjcf import (
 )
 
 if TYPE_CHECKING:
-    from fes_mj.riding.ride import Ride  # with machine code, of which a bench needs nothing
+    from fes_mj.riding import ride  # with machine code, of which a bench needs nothing
 
 ROAD, DRIVETRAIN = "road", "drivetrain"  # the joint along the road, m; the tendon road / travel - crank, rad
 # At 60 rpm finer than on the bench. At the 250 rpm that D1 reaches on the flat it makes 1200 steps a turn, and the
@@ -37,7 +37,7 @@ _FAR = 1e6  # rad, an upper limit that is never reached: MuJoCo has no one-sided
 
 
 def build_road_mjcf(
-    ride: "Ride",
+    ride: "ride.Ride",
     timestep: float = TIMESTEP,
     *,
     integrator: str = "discrete",
@@ -77,7 +77,7 @@ def build_road_mjcf(
     return spec
 
 
-def _add_drivetrain(spec: Spec, ride: "Ride") -> None:
+def _add_drivetrain(spec: Spec, ride: "ride.Ride") -> None:
     tendon = spec.add_tendon(name=DRIVETRAIN)
     tendon.wrap_joint(ROAD, 1 / ride.travel)
     tendon.wrap_joint("crank", -1.0)
@@ -91,7 +91,7 @@ def _add_drivetrain(spec: Spec, ride: "Ride") -> None:
         tendon.solref_limit, tendon.solimp_limit = LOOP_SOLREF, LOOP_SOLIMP
 
 
-def _add_sensors(spec: Spec, ride: "Ride", driven: bool, compatible: bool) -> None:
+def _add_sensors(spec: Spec, ride: "ride.Ride", driven: bool, compatible: bool) -> None:
     kinds, objects = mujoco.mjtSensor, mujoco.mjtObj
     for name, kind in ((f"{ROAD}_angle", kinds.mjSENS_JOINTPOS), (f"{ROAD}_speed", kinds.mjSENS_JOINTVEL)):
         spec.add_sensor(name=name, type=kind, objtype=objects.mjOBJ_JOINT, objname=ROAD)
@@ -104,7 +104,7 @@ def _add_sensors(spec: Spec, ride: "Ride", driven: bool, compatible: bool) -> No
 
 
 def start_state(
-    ride: "Ride", before: float = 0.0, gain: dict[str, float] | None = None
+    ride: "ride.Ride", before: float = 0.0, gain: dict[str, float] | None = None
 ) -> dict[str, tuple[float, float]]:
     """Position of every joint, and its mean speed over the time `before` (s) that; with none its speed then.
 
