@@ -20,7 +20,6 @@ from fes_mj.moments.fourier import HARMONICS
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE, ReferenceTricycle
 from fes_mj.moments.uncertainty import power_weights
 from fes_mj.muscles.anatomy import GROUPS
-from fes_mj.muscles.geometry import Flexion
 from fes_mj.muscles.passive import passive_moments
 from fes_mj.muscles.posterior import Posterior
 from fes_mj.muscles.prior import priors, quantile, ramp
@@ -143,7 +142,7 @@ def _seen(riders: Riders, measured: Measured) -> tuple[FloatArray, FloatArray]:
     moment = pull(unit, motion, reference.cadence).moment.map(lambda moment: (activation * moment)[:, :, 0])
     by_group = np.einsum("rf,gmf->mrg", weights, coefficients(moment))
     counts = (measured.group[:, None] == WHOLE) | (measured.group[:, None] == np.arange(len(GROUPS)))
-    passive = passive_moments(Flexion.along(motion, np.radians(riders["hip_offset_deg"])))
+    passive = passive_moments(riders.flexion(motion))
     return by_group * counts, coefficients(passive)[:, 0] @ weights.T * (measured.group == WHOLE)
 
 

@@ -60,7 +60,7 @@ def pull(riders: Riders, motion: Motion, cadence: Any, muscles: Anatomy | None =
 
     muscles: those that ship by default.
     """
-    flexion = Flexion.along(motion, np.radians(riders["hip_offset_deg"]))
+    flexion = riders.flexion(motion)
     rate = motion.joint_rate.map(lambda rate: -cadence * np.atleast_2d(rate))
     return pull_at(riders, flexion, Flexion(rate.hip, rate.knee), motion.design.rider, muscles)
 

@@ -11,9 +11,11 @@ from fes_mj.common.arrays import FloatArray
 from fes_mj.common.errors import InputError
 from fes_mj.common.reading import DATA
 from fes_mj.common.writing import replacing
+from fes_mj.linkage.kinematics import Motion
 from fes_mj.linkage.variables import component, replaced
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE, ReferenceTricycle
 from fes_mj.muscles.anatomy import GROUPS, Anatomy
+from fes_mj.muscles.geometry import Flexion
 from fes_mj.muscles.prior import priors
 
 SHIPPED = DATA / "muscles"
@@ -50,6 +52,10 @@ class Riders:
     def most_probable(self) -> "Riders":
         """The one member with the largest density."""
         return self.taken([int(np.argmax(self.likelihood))])
+
+    def flexion(self, motion: Motion) -> Flexion:
+        """Hip and knee flexion along a motion, rad: the hip's of every member, shape (members, designs, angles)."""
+        return Flexion.along(motion, np.radians(self["hip_offset_deg"]))
 
     @property
     def fall(self) -> FloatArray:

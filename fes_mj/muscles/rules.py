@@ -78,9 +78,7 @@ def stimulated(rule: str, riders: Riders, design: Design, cadence: float, duty: 
     cadence: rad/s. duty: as for best_windows, of the best rule alone.
     Raises InputError for joints beyond the range of the muscles' lengths, AssemblyError if the linkage does not turn.
     """
-    turning(design)
-    motion = kinematics.solve(design, ANGLES)
-    anatomy().require_range(design.name, Flexion.along(motion, np.radians(riders["hip_offset_deg"])))
+    motion = known_motion(riders, design)
     if rule == BY_ANGLE:
         return Stimulated(riders, motion, cadence, moments_by_angle(trial_moments(riders), motion, riders.measured_on))
     windows = None
@@ -93,6 +91,14 @@ def stimulated(rule: str, riders: Riders, design: Design, cadence: float, duty: 
         stimulation = stimulated_by_joint(riders, design, cadence, ANGLES)
         turn = MuscleTurn(pull(riders, motion, cadence), responded(stimulation, riders, np.full((1, 1), cadence)))
     return Stimulated(riders, motion, cadence, turn.moment.map(lambda moment: moment[:, 0]), turn, windows)
+
+
+def known_motion(riders: Riders, design: Design) -> Motion:
+    """Over ANGLES. Raises as `stimulated`."""
+    turning(design)
+    motion = kinematics.solve(design, ANGLES)
+    anatomy().require_range(design.name, riders.flexion(motion))
+    return motion
 
 
 def trial_windows(riders: Riders, design: Design) -> Windows:

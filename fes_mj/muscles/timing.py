@@ -12,6 +12,7 @@ import numpy as np
 from fes_mj.common.arrays import ComplexArray, FloatArray
 from fes_mj.common.errors import InputError
 from fes_mj.muscles.activation import answer, trapezium
+from fes_mj.muscles.anatomy import GROUPS
 from fes_mj.muscles.prior import ramp
 from fes_mj.muscles.riders import Riders
 
@@ -42,6 +43,13 @@ class Windows:
     def of(self, member: int) -> "Windows":
         """Those of one of the members."""
         return self if self.on.shape[1] == 1 else Windows(self.on[:, [member]], self.width[:, [member]])
+
+    def by_group(self, member: int = 0) -> dict[str, list[float] | None]:
+        """[on, off] of one of the members on the one design by group, deg; None where a group is not stimulated."""
+        own = self.of(member)
+        pairs = zip(own.on[:, 0, 0], own.width[:, 0, 0], strict=True)
+        ends = ([float(on), float((on + width) % 360)] if width else None for on, width in pairs)
+        return dict(zip(GROUPS, ends, strict=True))
 
     def shifted(self, degrees: float) -> "Windows":
         """The same later in the turn."""

@@ -13,7 +13,6 @@ from fes_mj.common.machine_code import machine_code
 from fes_mj.linkage.kinematics import Motion
 from fes_mj.muscles.anatomy import anatomy
 from fes_mj.muscles.contraction import CURVATURE, LENGTHENING, PLATEAU, tension
-from fes_mj.muscles.geometry import Flexion
 from fes_mj.muscles.riders import Riders
 
 
@@ -35,7 +34,7 @@ NO_MUSCLES = MuscleTable(np.zeros(0, int), *np.zeros((2, 1, 0)))
 def muscle_table(riders: Riders, motion: Motion) -> MuscleTable:
     """Of one rider along a motion over uniform crank angles of a turn."""
     muscles, column = anatomy(), (slice(None), None, None, None)
-    lengths = muscles.lengths.at(Flexion.along(motion, np.radians(riders["hip_offset_deg"])))
+    lengths = muscles.lengths.at(riders.flexion(motion))
     rate = motion.joint_rate.map(lambda rate: -np.atleast_2d(rate))  # of flexion
     growth = lengths.by_hip * rate.hip + lengths.by_knee * rate.knee
     parameters = (muscles.optimal[column], riders.slack(muscles), muscles.pennation[column], riders["max_speed"])

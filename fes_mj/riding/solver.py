@@ -17,11 +17,12 @@ from typing import Any, NamedTuple, TypeAlias
 
 from fes_mj.common.machine_code import kept_machine_code, machine_code, sources
 from fes_mj.linkage.inertia import CrankInertia
+from fes_mj.muscles.step import stimulation
 from fes_mj.riding.leg_table import LegTable, leg_table
 from fes_mj.riding.lookup import between, place
 from fes_mj.riding.muscle_table import MuscleTable, driven_by
 from fes_mj.riding.ride import Load, Ride
-from fes_mj.riding.stimulated import NO_STIMULATOR, StimulatedRider, Stimulator, felt
+from fes_mj.riding.stimulated import NO_STIMULATOR, StimulatedRider, Stimulator, lead
 
 TOUCH = 1e-12  # m/s: rounding, by which a crank that has just caught up may be too fast or too slow
 STANDING = 1e-9  # rad/s: a crank that is slower takes no step by its angle
@@ -102,9 +103,9 @@ def moved(state: State, rates: State, time: float) -> State:
 
 
 @machine_code
-def answering(system: System, group: int, angle: float, speed: float, active: float) -> float:
-    """Rate of an activation, 1/s; angle: of its leg's crank, rad."""
-    missing = felt(system.stimulator, group, angle, speed) - active
+def answering(system: System, group: int, felt: float, active: float) -> float:
+    """Rate of an activation, 1/s; felt: crank angle of its leg whose stimulation it feels, rad."""
+    missing = stimulation(system.stimulator.stimulus, group, felt) - active
     return missing / (system.stimulator.rise if missing > 0 else system.stimulator.fall)
 
 
@@ -112,17 +113,18 @@ def answering(system: System, group: int, angle: float, speed: float, active: fl
 def muscles(system: System, state: State, row: int, part: float) -> tuple[float, Activation]:
     """Virtual work of both legs' muscles, N m, and the rates of their activations."""
     table, angle, speed, active = system.table, state.crank_angle, state.crank_speed, state.activation
-    half = len(table.ahead) // 2
-    other, behind = row + half if row < half else row - half, angle - math.pi
+    half, ahead = len(table.ahead) // 2, lead(system.stimulator, speed)
+    other = row + half if row < half else row - half
+    felt, behind = angle + ahead, angle - math.pi + ahead
     drive = driven_by(table.muscles, row, part, speed, (active[0], active[1], active[2]))
     drive += driven_by(table.muscles, other, part, speed, (active[3], active[4], active[5]))
     rates = (
-        answering(system, 0, angle, speed, active[0]),
-        answering(system, 1, angle, speed, active[1]),
-        answering(system, 2, angle, speed, active[2]),
-        answering(system, 0, behind, speed, active[3]),
-        answering(system, 1, behind, speed, active[4]),
-        answering(system, 2, behind, speed, active[5]),
+        answering(system, 0, felt, active[0]),
+        answering(system, 1, felt, active[1]),
+        answering(system, 2, felt, active[2]),
+        answering(system, 0, behind, active[3]),
+        answering(system, 1, behind, active[4]),
+        answering(system, 2, behind, active[5]),
     )
     return drive, rates
 

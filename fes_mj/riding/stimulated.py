@@ -19,16 +19,13 @@ from fes_mj.common.machine_code import machine_code
 from fes_mj.common.units import RPM
 from fes_mj.linkage import kinematics
 from fes_mj.linkage.design import Design
-from fes_mj.linkage.turning import turning
 from fes_mj.linkage.variables import crank_speed
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE, ReferenceTricycle
-from fes_mj.muscles.anatomy import GROUPS, anatomy
 from fes_mj.muscles.drive import Muscles
-from fes_mj.muscles.geometry import Flexion
 from fes_mj.muscles.power import MuscleTurn
 from fes_mj.muscles.pull import pull
 from fes_mj.muscles.riders import Riders
-from fes_mj.muscles.rules import BEST, MEASURED
+from fes_mj.muscles.rules import BEST, MEASURED, known_motion
 from fes_mj.muscles.step import Stimulus, stimulation
 from fes_mj.muscles.timing import ANGLES, Windows, responded
 
@@ -36,10 +33,12 @@ TIMINGS = (BEST, MEASURED)
 
 
 class Stimulator(NamedTuple):
-    """What muscles are asked for. stimulus: as they feel it at the cadence, rad/s. rise, fall: of activation, s."""
+    """What muscles are asked for. stimulus: as they feel it at the cadence of the windows. lag: rad, of the first
+    harmonic of their answer there. rise, fall: of activation, s.
+    """
 
     stimulus: Stimulus
-    cadence: float
+    lag: float
     rise: float
     fall: float
 
@@ -74,13 +73,12 @@ class StimulatedRider(Brief):
         """In the form that machine code reads."""
         rise = float(self.riders["rise_s"].item())
         windows = self.windows.shifted(np.degrees(self.cadence * float(self.riders["delay_s"].item())))
-        return Stimulator(Stimulus.of(windows, self.cadence), self.cadence, rise, float(self.riders.fall.item()))
+        lag, fall = math.atan(self.cadence * rise), float(self.riders.fall.item())
+        return Stimulator(Stimulus.of(windows, self.cadence), lag, rise, fall)
 
     def require_range(self, design: Design) -> None:
         """Raise AssemblyError if a linkage does not turn, InputError where muscle lengths are not known."""
-        turning(design)
-        offset = np.radians(self.riders["hip_offset_deg"])
-        anatomy().require_range(design.name, Flexion.along(kinematics.solve(design, ANGLES), offset))
+        known_motion(self.riders, design)
 
     def power_mean(self, design: Design, cadence: float) -> float:
         """Of one leg at a steady cadence, rad/s, W: at the windows' own that of statics."""
@@ -103,9 +101,7 @@ class StimulatedRider(Brief):
     @property
     def windows_deg(self) -> dict[str, list[float] | None]:
         """[on, off] by group at the cadence, before delay and activation, deg of crank."""
-        pairs = zip(self.windows.on[:, 0, 0], self.windows.width[:, 0, 0], strict=True)
-        ends = ([float(on), float((on + width) % 360)] if width else None for on, width in pairs)
-        return dict(zip(GROUPS, ends, strict=True))
+        return self.windows.by_group()
 
 
 def stimulated_rider(muscles: Muscles, design: Design, cadence: float | None = None) -> StimulatedRider:
@@ -125,13 +121,12 @@ def stimulated_rider(muscles: Muscles, design: Design, cadence: float | None = N
 
 
 @machine_code
-def felt(stimulator: Stimulator, group: int, angle: float, crank_speed: float) -> float:
-    """Stimulation of a group in [0, 1] that its muscles feel at a crank angle of their leg, rad, and a speed, rad/s."""
-    ahead = math.atan(crank_speed * stimulator.rise) - math.atan(stimulator.cadence * stimulator.rise)
-    return stimulation(stimulator.stimulus, group, angle + ahead)
+def lead(stimulator: Stimulator, crank_speed: float) -> float:
+    """By how much ahead of the crank, rad, the stimulation is that muscles feel at a speed in rad/s."""
+    return math.atan(crank_speed * stimulator.rise) - stimulator.lag
 
 
 def felt_over(stimulator: Stimulator, angle: FloatArray, crank_speed: float) -> FloatArray:
-    """The same of every group at crank angles, shape (groups, angles)."""
-    groups = range(len(stimulator.stimulus.on))
-    return np.array([[felt(stimulator, group, float(at), crank_speed) for at in angle] for group in groups])
+    """Stimulation of every group in [0, 1] that its muscles feel at crank angles, shape (groups, angles)."""
+    groups, felt = range(len(stimulator.stimulus.on)), (angle + lead(stimulator, crank_speed)).tolist()
+    return np.array([[stimulation(stimulator.stimulus, group, at) for at in felt] for group in groups])

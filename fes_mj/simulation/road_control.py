@@ -12,10 +12,10 @@ from fes_mj.linkage.legs import TWO_LEGS
 from fes_mj.moments.drive import drive as driven_by_moments
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.muscles.anatomy import GROUPS
-from fes_mj.muscles.step import LegMuscles, activated, joint_moments, weights
+from fes_mj.muscles.step import LegMuscles, activated, joint_moments, stimulation, weights
 from fes_mj.riding.lookup import DRIVEN, between, place
 from fes_mj.riding.ride import Ride
-from fes_mj.riding.stimulated import NO_STIMULATOR, Stimulator, felt
+from fes_mj.riding.stimulated import NO_STIMULATOR, Stimulator, lead
 from fes_mj.simulation.road_mjcf import ROAD
 from fes_mj.simulation.stepping import drive_addresses
 
@@ -138,8 +138,9 @@ def pull(control: RoadControl, memory: Memory, leg: int, qpos: Any, speeds: Any,
     """Set the moments of a leg's muscles."""
     knee, hip = control.knee[leg], control.hip[leg]
     angle, activation, before = qpos[control.crank] - control.leg_lag[knee], memory.activation[leg], memory.felt[leg]
+    felt = angle + lead(control.stimulator, speeds[control.crank_speed])
     for group in range(len(activation)):
-        now = felt(control.stimulator, group, angle, speeds[control.crank_speed])
+        now = stimulation(control.stimulator.stimulus, group, felt)
         if not math.isnan(before[group]):
             activation[group] = activated(activation[group], before[group], now, control.rising, control.falling)
         before[group] = now

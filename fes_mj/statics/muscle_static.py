@@ -80,12 +80,7 @@ class MuscleStatic(DrivenTurn):
     def windows_deg(self) -> dict[str, list[float] | None] | None:
         """[on, off] by group of the most probable rider's stimulation, deg of crank; None where there is none."""
         windows = self.stimulated.windows
-        if windows is None:
-            return None
-        member = self.most_probable % windows.on.shape[1]  # or all members have the same
-        pairs = zip(windows.on[:, member, 0], windows.width[:, member, 0], strict=True)
-        ends = ([float(on), float((on + width) % 360)] if width else None for on, width in pairs)
-        return dict(zip(GROUPS, ends, strict=True))
+        return windows.by_group(self.most_probable) if windows else None
 
     @property
     def notes(self) -> list[str]:

@@ -12,7 +12,6 @@ from fes_mj.linkage import kinematics
 from fes_mj.linkage.design import Design, Linkage
 from fes_mj.linkage.joints import PerJoint
 from fes_mj.muscles.anatomy import GROUPS, anatomy
-from fes_mj.muscles.geometry import Flexion
 from fes_mj.muscles.passive import passive_moments
 from fes_mj.muscles.power import best_turn, muscle_turn
 from fes_mj.muscles.riders import Riders, load_riders
@@ -31,7 +30,7 @@ def _joint_power(riders: Riders, setup: Setup) -> PerJoint[tuple[FloatArray, Flo
     design = TRICYCLE.with_rider(thigh=leg, shank=leg)
     motion, rate = kinematics.solve(design, ANGLES), kinematics.solve(design, ANGLES).joint_rate
     turn = muscle_turn(riders, design, cadence, trial_windows(theirs, design))
-    passive = passive_moments(Flexion.along(motion, np.radians(riders["hip_offset_deg"])))
+    passive = passive_moments(riders.flexion(motion))
 
     def of_joint(joint: str) -> tuple[FloatArray, FloatArray]:
         moment = (turn.moment[joint] + passive[joint])[:, 0]
@@ -112,7 +111,7 @@ def stepping_per_cycling(riders: Riders, setup: Setup) -> FloatArray:
 
     def power(design: Design) -> FloatArray:
         motion = kinematics.solve(design, ANGLES)
-        anatomy().require_range(design.name, Flexion.along(motion, np.radians(riders["hip_offset_deg"])))
+        anatomy().require_range(design.name, riders.flexion(motion))
         rates = [rpm * RPM for rpm in setup["cadence_rpm"]]
         return np.asarray(np.mean([best_turn(riders, design, rate)[0].power_mean[:, 0] for rate in rates], axis=0))
 
