@@ -59,23 +59,18 @@ def optimize(
     command = options.command(kind) + (f" -o {shell_word(out.name)}" if out else "")
     origin = f"Found by fes_mj {version('fes-mj')}:\n{command}"
     from fes_mj.optimization.findings import Findings
-    from fes_mj.optimization.muscle_winner import MuscleWinner
-    from fes_mj.optimization.winner import Winner, assess
 
     findings = Findings(out, origin, options.recipe(kind)) if out else None
     try:
         optimum = _search(kind, moments, options, findings)
         # first: what was found stays, whatever becomes of the rest
         files = _write(optimum, origin, findings.out, options) if findings else {}
-        winner: Winner | MuscleWinner
-        if muscles := optimum.problem.muscles:
-            winner = MuscleWinner.of(optimum.design, compared_with, muscles)
-        else:
-            winner = assess(optimum.design, compared_with, moments, options.seed)
+        winner = _assess(optimum, compared_with, moments, options.seed)
         if report:
-            assert isinstance(winner, Winner)  # _check_files
             from fes_mj.optimization.page import page_html
+            from fes_mj.optimization.winner import Winner
 
+            assert isinstance(winner, Winner)  # _check_files
             write_text(report, page_html(winner, optimum, origin))
             files["report"] = str(report)
     except (KeyboardInterrupt, Exception) as error:
@@ -119,6 +114,19 @@ def _search(kind: str, moments: fes_mj.JointMoments, options: SearchOptions, fin
             progress=advance,
             **problem,
         )
+
+
+def _assess(
+    optimum: Optimum, compared_with: fes_mj.Design, moments: fes_mj.JointMoments, seed: int
+) -> Winner | MuscleWinner:
+    """What the design that was found is worth, beside the one that it had to beat."""
+    if muscles := optimum.problem.muscles:
+        from fes_mj.optimization.muscle_winner import MuscleWinner
+
+        return MuscleWinner.of(optimum.design, compared_with, muscles)
+    from fes_mj.optimization.winner import assess
+
+    return assess(optimum.design, compared_with, moments, seed)
 
 
 def _files(out: Path, options: SearchOptions) -> dict[str, Path]:

@@ -13,7 +13,7 @@ from fes_mj.common.console import print_table, progress_bar, say
 from fes_mj.common.errors import InputError, require_extra
 from fes_mj.common.parallel import Workers
 from fes_mj.common.writing import make_folder, require_writable
-from fes_mj.sweep.study import Muscles, Study, label, load_study
+from fes_mj.sweep.study import MuscleOptions, Study, label, load_study
 
 if TYPE_CHECKING:
     from fes_mj.sweep.sweep import Sweep
@@ -50,7 +50,7 @@ def sweep(
     workers = Workers(jobs if jobs is not None else os.cpu_count() or 1, cluster)
     if cluster is not None:
         _require_address(cluster)
-    muscles = Muscles(drive.timing, drive.duty, drive.muscles) if drive.drive == "muscles" else None
+    muscles = MuscleOptions(drive.timing, drive.duty, drive.muscles) if drive.drive == "muscles" else None
     sweep = Sweep(load_study(study, cadence, muscles), out)
     for moments in sweep.study.moments.values():
         warn_of(moments)

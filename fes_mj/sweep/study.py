@@ -40,7 +40,7 @@ NAMES = ("design", "moments")  # axes whose values are names
 _EXAMPLES = {"design": '"d1", "mine.toml"', "moments": '"p1p2", "mine.csv"'}
 
 
-class Muscles(NamedTuple):
+class MuscleOptions(NamedTuple):
     """How muscles drive a study; riders: a file of an ensemble instead of those of the rider groups."""
 
     rule: str = BEST
@@ -112,7 +112,7 @@ def label(axis: str) -> str:
     return ", ".join(part for part in (axis.removesuffix("_rpm"), unit) if part)
 
 
-def load_study(path: Path, cadence: float | None = None, muscles: Muscles | None = None) -> Study:
+def load_study(path: Path, cadence: float | None = None, muscles: MuscleOptions | None = None) -> Study:
     """Read a study file; cadence: of all points, rpm, for a file that says nothing of it.
 
     muscles: drive, those of the ensembles of the moments that the file names.
@@ -154,7 +154,7 @@ def load_study(path: Path, cadence: float | None = None, muscles: Muscles | None
     return study
 
 
-def _stimulation(settings: Section, analysis: str, muscles: Muscles, names: list[str]) -> Stimulation:
+def _stimulation(settings: Section, analysis: str, muscles: MuscleOptions, names: list[str]) -> Stimulation:
     """Whose muscles drive by the names of the moments. Refuses names of which no muscles are known."""
     if analysis == "dynamic":
         settings.refuse("analysis", analysis, "static where muscles drive")

@@ -15,7 +15,7 @@ from fes_mj.muscles.rules import BEST, BY_ANGLE
 from fes_mj.statics.muscle_static import MuscleStatic
 from fes_mj.statics.turn import QuasiStatic
 from fes_mj.sweep.evaluation import column_types, evaluate
-from fes_mj.sweep.study import Muscles, load_study
+from fes_mj.sweep.study import MuscleOptions, load_study
 from tests.conftest import write_study
 
 WIDE = """
@@ -168,7 +168,7 @@ def test_rows_of_muscles_are_those_of_the_designs_alone(tmp_path: Path) -> None:
         '[study]\ncharacteristics = true\n[grid]\ndesign = ["trt"]\nthigh = [0.42, 0.52]\nR2 = [0.14, 0.3]\n'
     )
     for rule in (BEST, BY_ANGLE):
-        study = load_study(path, 50.0, Muscles(rule, 0.25, tmp_path / "mine.npz"))
+        study = load_study(path, 50.0, MuscleOptions(rule, 0.25, tmp_path / "mine.npz"))
         columns = evaluate(study, 0)
         assert columns.keys() == column_types(study).keys()
         for row in range(study.points):
@@ -188,11 +188,11 @@ def test_rows_of_muscles_are_those_of_the_designs_alone(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "muscles", "said"),
     [
-        ('[study]\nanalysis = "dynamic"\n', Muscles(), "static where muscles drive"),
-        ("", Muscles(duty=0), "duty is 0"),
+        ('[study]\nanalysis = "dynamic"\n', MuscleOptions(), "static where muscles drive"),
+        ("", MuscleOptions(duty=0), "duty is 0"),
     ],
 )
-def test_what_muscles_cannot_do_is_refused(tmp_path: Path, text: str, muscles: Muscles, said: str) -> None:
+def test_what_muscles_cannot_do_is_refused(tmp_path: Path, text: str, muscles: MuscleOptions, said: str) -> None:
     (tmp_path / "study.toml").write_text(text + '[grid]\ndesign = ["trt"]\n')
     with pytest.raises(InputError, match=said):
         load_study(tmp_path / "study.toml", muscles=muscles)
@@ -202,6 +202,6 @@ def test_moments_of_which_no_muscles_are_known_are_refused(tmp_path: Path) -> No
     path = write_study(tmp_path)
     path.write_text('[grid]\ndesign = ["trt"]\nmoments = ["p1p2", "mine.csv"]\n')
     with pytest.raises(InputError, match=r"mine\.csv, of which no muscles are known"):
-        load_study(path, muscles=Muscles())
+        load_study(path, muscles=MuscleOptions())
     with pytest.raises(InputError, match="one ensemble for one"):
-        load_study(path, muscles=Muscles(riders=tmp_path / "mine.npz"))
+        load_study(path, muscles=MuscleOptions(riders=tmp_path / "mine.npz"))
