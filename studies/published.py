@@ -100,8 +100,9 @@ def figure(records: list[dict[str, Any]]) -> Figure:
         axes.plot(ends[1], place, "o", color=colour)
     axes.set(
         xlim=(-6, 6),
+        ylim=(-0.7, len(shown) - 0.3),
         yticks=range(len(shown)),
-        xlabel="prediction in half widths of the measurement (grey), beside a direction in its own unit",
+        xlabel="prediction in half widths of the measurement (grey),\nbeside a direction in its own unit",
     )
     axes.set_yticklabels([record["name"] for record in reversed(shown)], fontsize=7)
     for name, colour in zip(VERDICTS, (SERIES[2], SERIES[1], SERIES[0]), strict=True):
