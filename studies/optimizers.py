@@ -18,6 +18,7 @@ from fes_mj.linkage.design_file import design_toml, load_design
 from fes_mj.moments.files import load_moments
 from fes_mj.moments.joint_moments import GROUPS
 from fes_mj.optimization.limits import DEFAULT, load_limits
+from fes_mj.optimization.moment_drive import MomentDrive
 from fes_mj.optimization.optimize import run_searches
 from fes_mj.optimization.pareto import pareto_front
 from fes_mj.optimization.problem import Problem
@@ -54,7 +55,8 @@ def problem(target: str, manufacturable: bool, caution: float = 0.0) -> Problem:
     speeds = joint_speeds(design, table).map(lambda speed: speed * (1 + 1e-9))
     task = Problem(design, table, limits, speeds)
     paper = replace(task, limits=replace(limits, grashof_min=0.0))
-    return replace(task, caution=caution, baseline=paper.evaluate(task.variables(design)[None]).power[0])
+    baseline = paper.evaluate(task.variables(design)[None]).power[0]
+    return replace(task, drive=MomentDrive(caution=caution, baseline=baseline))
 
 
 def summarise(target: str, method: str, results: list[Result], reference: float | None) -> Row:
@@ -131,7 +133,8 @@ def unbounded() -> dict[str, str]:
         best = run_searches(task, "cma-es", searches=2, budget=20_000, seed=3, workers=WORKERS)[0]
         turn = task.evaluate(best.x[None])
         values = dict(zip((c.name for c in task.constraints), turn.values[0], strict=True))
-        own = gain(turn.power[0], np.asarray(task.baseline))
+        assert isinstance(task.drive, MomentDrive)
+        own = gain(turn.power[0], np.asarray(task.drive.baseline))
         notes[f"D1's joint speeds, gear ratio up to {ratio:g}"] = (
             f"{best.merit:.2f} W ({own.mean:+.2f} ± {own.deviation:.2f} W), knee {values['knee_min']:.1f} to "
             f"{values['knee_max']:.1f} deg at gear ratio {best.x[-1]:.2f}"

@@ -99,7 +99,7 @@ def _search(kind: str, moments: fes_mj.JointMoments, options: SearchOptions, fin
 
     searches = 1 if options.method == "nsga-ii" else options.searches
     problem = options.problem_options()
-    total = searches * (options.budget or usual_budget(options.method, problem["muscles"]))
+    total = searches * (options.budget or usual_budget(options.method, options.drive.drive == "muscles"))
     with progress_bar(f"{options.method}, evaluations", total, options.silent) as advance:
         return fes_mj.optimize(
             kind,
@@ -120,10 +120,12 @@ def _assess(
     optimum: Optimum, compared_with: fes_mj.Design, moments: fes_mj.JointMoments, seed: int
 ) -> Winner | MuscleWinner:
     """What the design that was found is worth, beside the one that it had to beat."""
-    if muscles := optimum.problem.muscles:
+    from fes_mj.optimization.stimulated import MuscleDrive
+
+    if isinstance(drive := optimum.problem.drive, MuscleDrive):
         from fes_mj.optimization.muscle_winner import MuscleWinner
 
-        return MuscleWinner.of(optimum.design, compared_with, muscles)
+        return MuscleWinner.of(optimum.design, compared_with, drive)
     from fes_mj.optimization.winner import assess
 
     return assess(optimum.design, compared_with, moments, seed)

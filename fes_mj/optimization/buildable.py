@@ -11,17 +11,15 @@ from typing import Any
 
 import numpy as np
 
-from fes_mj.common.arrays import FloatArray
+from fes_mj.common.arrays import ComplexArray, FloatArray
 from fes_mj.common.errors import MissingPartError
 from fes_mj.linkage.clearance import Side
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.inertia import body_loads
-from fes_mj.linkage.joints import JOINTS
-from fes_mj.linkage.kinematics import FULL_TURN, solve
+from fes_mj.linkage.joints import JOINTS, PerJoint
+from fes_mj.linkage.kinematics import FULL_TURN, Motion
 from fes_mj.linkage.layers import least_clearance
 from fes_mj.linkage.plates import Hole, Plate, hole_places
-from fes_mj.moments.joint_moments import JointMoments
-from fes_mj.moments.torque_map import torque_map
 from fes_mj.statics.characteristics import motion_characteristics
 from fes_mj.statics.cycles import Cycles
 from fes_mj.statics.equilibrium import equilibrium
@@ -80,11 +78,12 @@ def transmission_angle(design: Design, turn: Cycles) -> FloatArray:
     return np.asarray(np.degrees(np.min([np.minimum(end, np.pi - end) for end in ends], axis=0)))
 
 
-def pin_force(design: Design, moments: JointMoments, points: int = POINTS) -> float:
-    """Largest on any pin while riding with masses, N, of a design that turns."""
-    motion, cadence = solve(design, np.linspace(0, 2 * np.pi, points, endpoint=False)), design.linkage.cadence
-    moment = torque_map(moments).along(motion, cadence)
-    _, forces = equilibrium(motion, moment, body_loads(motion, cadence))
+def pin_force(motion: Motion, moment: PerJoint[FloatArray]) -> float:
+    """Largest on any pin, N, of a design that joint moments (N m) drive along its motion, with masses."""
+    return _on_pins(equilibrium(motion, moment, body_loads(motion, motion.design.linkage.cadence))[1])
+
+
+def _on_pins(forces: dict[str, ComplexArray]) -> float:
     return max(force for joint, force in peaks(forces).items() if joint not in JOINTS)
 
 
@@ -137,7 +136,7 @@ class Buildability:
             extrapolated_share=float(turn.summary()["extrapolated_share"]),
             transmission_angle_min_deg=float(motion_characteristics(turn.motion)["transmission_angle_min_deg"]),
             hole_distance_min_m=float(hole_distance(turn.design)[0]),
-            pin_force_max_N=max(force for joint, force in peaks(forces.with_masses).items() if joint not in JOINTS),
+            pin_force_max_N=_on_pins(forces.with_masses),
             clearance_min_m=least,
             friction_loss_W=BearingLoss(forces, PLAIN).power,
         )

@@ -15,15 +15,12 @@ from fes_mj.linkage.assembly import LEAST_CLEARANCE, grashof_margin
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.joints import JOINTS, PerJoint
 from fes_mj.linkage.variables import COMPONENTS, LENGTHS
-from fes_mj.moments.reference_tricycle import ReferenceTricycle
 from fes_mj.optimization.buildable import KEYS, BuildLimits, hole_distance, transmission_angle
 from fes_mj.statics.cycles import Cycles
-from fes_mj.statics.extrapolation import NO_MORE
 
 DEFAULT = DATA / "optimization.toml"
 PIVOTS = ("R1x", "R1y", "R7x", "R7y")
 VARIED = (*LENGTHS, "gear_ratio")  # the ten variables x of the problem
-_LEAST_OVERLAP = 0.1  # deg
 _ON_EDGE = 1e-12  # m: a pivot that near to the border of the design space is on it, and inside
 _BOUNDS = np.array([(COMPONENTS[name].variable.low, COMPONENTS[name].variable.high) for name in LENGTHS]).T
 _OF_FOUR_BAR = [VARIED.index(name) for name in ("R1x", "R1y", "R2", "R6")]
@@ -179,10 +176,13 @@ def motion_constraints(
     joint_speed: PerJoint[float],
     gear_ratios: tuple[float, float],
     ripple: float | None,
-    muscles: bool = False,
+    known: tuple[str, float],
 ) -> tuple[Constraint, ...]:
-    """Constraints on the turn, first those whose values are known at once; joint_speed in deg/s, as of Problem."""
-    known, build = ("muscles", 0.0) if muscles else ("overlap", _LEAST_OVERLAP), build_constraints(limits.build)
+    """Constraints on the turn, first those whose values are known at once; joint_speed in deg/s, as of Problem.
+
+    known: what the joints' angles have to lie in, and how far, deg.
+    """
+    build = build_constraints(limits.build)
     return (
         Constraint("leg_reach", "m", True, LEAST_CLEARANCE, 0.01),
         *range_constraints(limits),
@@ -236,35 +236,10 @@ def length_values(design: Design, lengths: FloatArray, polygon: ComplexArray) ->
 def motion_values(
     turn: Cycles, speeds: PerJoint[FloatArray], known: PerJoint[FloatArray], gear_ratio: FloatArray
 ) -> FloatArray:
-    """Values of the paper's constraints on the turn, in their order, shape (n, 11); known: the joints' overlap, deg."""
+    """Values of the paper's constraints on the turn, in their order, shape (n, 11); known: as MomentDrive.inside."""
     ranges = [np.degrees(side) for joint in turn.joints for side in (joint.low, joint.high)]
     rates = (speeds[joint] * gear_ratio for joint in JOINTS)
     return np.column_stack([turn.turning.reach, *ranges, *rates, *known, gear_ratio, gear_ratio])
-
-
-def overlap(joint: str, turn: Cycles, reference: ReferenceTricycle) -> FloatArray:
-    """How far a joint comes into the range of the moments, from whichever side, deg, shape (n,); not above 0: never."""
-    (low, high), (bottom, top) = _beside(joint, turn, reference), reference.ranges[joint]
-    common = np.degrees(np.minimum(high - bottom, top - low))
-    # the angle beside a dead centre is too sharp for the parabola that found its extreme
-    return np.asarray(np.where(turn.outside[1][joint], np.minimum(common, 0.0), common))
-
-
-def _beside(joint: str, turn: Cycles, reference: ReferenceTricycle) -> tuple[FloatArray, FloatArray]:
-    """A joint's smallest and largest angle, rad, taken by whole turns to where the moments' range is, shape (n,)."""
-    low, high, *_ = turn.joints[joint]
-    shift = reference.turns_to_range(joint, low, high)
-    return np.asarray(low + shift), np.asarray(high + shift)
-
-
-def outside_share(turn: Cycles, reference: ReferenceTricycle) -> FloatArray:
-    """Share of the turn outside the moments' range, shape (n,); not 0 where it is left between two crank angles."""
-    excess = []
-    for joint in JOINTS:
-        (low, high), (bottom, top) = _beside(joint, turn, reference), reference.ranges[joint]
-        excess += [bottom - low, high - top]
-    between = (np.max(excess, axis=0) > NO_MORE / 2) / turn.angles[0].knee.shape[1]
-    return np.asarray(np.maximum(turn.outside[0], between))
 
 
 def build_values(design: Design, turn: Cycles, outside: FloatArray) -> FloatArray:

@@ -21,6 +21,7 @@ from fes_mj.moments.files import load_moments
 from fes_mj.moments.joint_moments import GROUPS, JointMoments
 from fes_mj.optimization.findings import Findings
 from fes_mj.optimization.limits import MEANINGS, PIVOTS, VARIED
+from fes_mj.optimization.moment_drive import MomentDrive
 from fes_mj.optimization.pareto import Front, pareto_front
 from fes_mj.optimization.problem import LENGTH_COUNT, Evaluation, Problem, make_problem
 from fes_mj.optimization.repair import changes, repaired
@@ -90,14 +91,12 @@ class Optimum(Brief):
     @property
     def riders(self) -> list[dict[str, float]]:
         """Whom the design was made for, the rider of its file first: legs and seat, and the power in it."""
-        designs, muscles = self.problem.riders(self.x), self.problem.muscles
+        task, designs = self.problem, self.problem.riders(self.x)
         ground = designs[0].linkage.ground
 
         def power(design: Design) -> float:
-            if muscles:
-                return float(muscles.power(design)[0])
-            work = float(cycles(design, self.problem.table).work[0, 0])
-            return work * float(turns_per_second(design.linkage.cadence))
+            turn, turns_per_s = cycles(design, task.table), turns_per_second(design.linkage.cadence)
+            return float(task.drive.power(design, turn, np.array([turns_per_s]), np.array([True]))[0, 0])
 
         return [
             {
@@ -169,8 +168,8 @@ def optimize(
         repair = changes(drawn, start)
     with findings.searching(task) if findings else nullcontext():
         if method == "nsga-ii":
-            budget = budget or usual_budget(method, None)
-            front = _front(task, budget, seed, smooth, findings)
+            budget = budget or usual_budget(method)
+            front = _front(task, moments, budget, seed, smooth, findings)
             progress(budget)
             best = front.x[int(np.argmax(front.power.mean(axis=1)))]
             return Optimum(task, method, name, best, front.evaluations, front)
@@ -181,10 +180,12 @@ def optimize(
     return Optimum(task, method, name, results[0].x, sum(result.evaluations for result in results), repair=repair)
 
 
-def _front(problem: Problem, budget: int, seed: int, smooth: bool, findings: Findings | None) -> Front:
+def _front(
+    problem: Problem, moments: JointMoments, budget: int, seed: int, smooth: bool, findings: Findings | None
+) -> Front:
     """Of the powers of both groups; their average is what counts as the best so far."""
     groups = tuple(map(load_moments, GROUPS))
-    averaged = replace(problem, table=WorkTable.of(*groups), baseline=0.0)
+    averaged = replace(problem, table=WorkTable.of(*groups), drive=MomentDrive(moments))
     improved = partial(findings.improve, 0) if findings else None
     return pareto_front(averaged, groups, budget, seed, smooth, improved)
 
@@ -208,7 +209,10 @@ def run_searches(
     """
     seeds = SeedSequence(seed).spawn(searches)
     outcomes: dict[int, Result | InputError] = {**findings.finished()} if findings else {}
-    budget, here = budget or usual_budget(method, problem.muscles), workers.jobs == 1 and not workers.cluster
+    budget, here = (
+        budget or usual_budget(method, not problem.drive.proportional),
+        workers.jobs == 1 and not workers.cluster,
+    )
     progress(budget * len(outcomes))
     missing = [number for number in range(searches) if number not in outcomes]
     kept_at_once = None if workers.cluster else findings

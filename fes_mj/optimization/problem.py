@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
@@ -18,7 +18,7 @@ from fes_mj.linkage.design_file import DESIGNS, load_design
 from fes_mj.linkage.joints import JOINTS, PerJoint
 from fes_mj.linkage.variables import COMPONENTS, VARIABLES, component, replaced
 from fes_mj.moments.joint_moments import JointMoments
-from fes_mj.optimization.buildable import pin_force, slow_values
+from fes_mj.optimization.buildable import slow_values
 from fes_mj.optimization.evenness import RippleLimit
 from fes_mj.optimization.limits import (
     DEFAULT,
@@ -34,9 +34,8 @@ from fes_mj.optimization.limits import (
     margins,
     motion_constraints,
     motion_values,
-    outside_share,
-    overlap,
 )
+from fes_mj.optimization.moment_drive import MomentDrive
 from fes_mj.optimization.people import ONE_RIDER, People
 from fes_mj.optimization.stimulated import MuscleDrive
 from fes_mj.statics.cycles import CYCLE_POINTS, Cycles, cycles, joint_speeds
@@ -89,24 +88,19 @@ class Evaluation:
 class Problem:
     """Most mean crank power of one leg, within limits on lengths, joint ranges, joint speeds and gear ratio.
 
-    template: kind, rider, seat and coupler angle of all designs. table: the sets of moments; the first is the one whose
-    power counts. joint_speed: largest mean absolute speed of each joint, deg/s. caution: with moments as of
-    work_table.uncertain_table, how many standard deviations of the gain over `baseline` (power of a design to beat,
-    shape (sets,)) are taken off it. people: who else rides it; the limits on joints and their speeds hold for each, and
-    the power is the people's. ripple: of the crank speed when ridden, if it is limited. moments: for forces on pins, if
-    these are limited. muscles: drive instead of moments; the gear ratio is then a variable like all others.
+    template: kind, rider, seat and coupler angle of all designs. table: the sets of moments, by which joints are laid
+    beside their range; the first is the one whose power counts. joint_speed: largest mean absolute speed of each joint,
+    deg/s. drive: what moves the legs, these moments or muscles. people: who else rides it; the limits on joints and
+    their speeds hold for each, and the power is the people's. ripple: of the crank speed when ridden, if it is limited.
     """
 
     template: Design
     table: WorkTable
     limits: Limits
     joint_speed: PerJoint[float]
-    caution: float = 0.0
-    baseline: FloatArray | float = 0.0
+    drive: MomentDrive | MuscleDrive = field(default_factory=MomentDrive)
     people: People = ONE_RIDER
     ripple: RippleLimit | None = None
-    moments: JointMoments | None = None
-    muscles: MuscleDrive | None = None
     points: int = CYCLE_POINTS
 
     def __post_init__(self) -> None:
@@ -123,7 +117,7 @@ class Problem:
     @property
     def varied(self) -> FloatArray:
         """Search ranges of what evolution varies: without the gear ratio, where power is proportional to it."""
-        return self.search if self.muscles else self.search[:-1]
+        return self.search[:-1] if self.drive.proportional else self.search
 
     @property
     def geometry(self) -> tuple[Constraint, ...]:
@@ -134,7 +128,7 @@ class Problem:
     def motion(self) -> tuple[Constraint, ...]:
         """Constraints on the turn."""
         ripple = self.ripple.limit if self.ripple else None
-        return motion_constraints(self.limits, self.joint_speed, self.gear_ratios, ripple, self.muscles is not None)
+        return motion_constraints(self.limits, self.joint_speed, self.gear_ratios, ripple, self.drive.known)
 
     @property
     def gear_ratios(self) -> tuple[float, float]:
@@ -210,8 +204,8 @@ class Problem:
             geared = ridden.with_linkage(gear_ratio=ratios[:, None])
             at_once = self._at_once(geared, turn, speeds, ratios)
             within = np.all(margins(self.motion[: at_once.shape[1]], at_once) >= 0, axis=1)
-            power[sound] = self.people.power(self._power(geared, within, turn.work * (per_s * ratios[:, None])))
-            hopeful = within & np.repeat((self.worth(power) >= to_beat)[sound], riders)
+            power[sound] = self.people.power(self.drive.power(geared, turn, per_s * ratios, within))
+            hopeful = within & np.repeat((self.drive.worth(power) >= to_beat)[sound], riders)
             motion[sound] = self._worst(np.column_stack([at_once, *self._in_time(geared, hopeful)]))
         return Evaluation(np.column_stack([free, gear_ratio]), power, np.hstack([lengths, motion]), self.constraints)
 
@@ -219,23 +213,10 @@ class Problem:
         self, design: Design, turn: Cycles, speeds: PerJoint[FloatArray], gear_ratio: FloatArray
     ) -> FloatArray:
         """Values of the constraints on the turn that do not take long, in their order, shape (n, constraints)."""
-        if self.muscles:
-            known = self.muscles.inside(turn)
-            outside: FloatArray = np.zeros(design.size)
-        else:
-            known = PerJoint.of(lambda joint: overlap(joint, turn, self.table.measured_on))
-            outside = outside_share(turn, self.table.measured_on)
-        values = motion_values(turn, speeds, known, gear_ratio)
-        return np.column_stack([values, build_values(design, turn, outside)]) if self.limits.build else values
-
-    def _power(self, design: Design, within: BoolArray, by_moments: FloatArray) -> FloatArray:
-        """Mean crank power, W, shape (n, sets): of muscles that of the designs `within` the limits, else NaN."""
-        if not self.muscles:
-            return by_moments
-        power = np.full((design.size, 1), np.nan)
-        if within.any():
-            power[within, 0] = self.muscles.power(design.taken(within))
-        return power
+        values = motion_values(turn, speeds, self.drive.inside(turn), gear_ratio)
+        if not self.limits.build:
+            return values
+        return np.column_stack([values, build_values(design, turn, self.drive.outside(turn))])
 
     def _in_time(self, design: Design, within: BoolArray) -> list[FloatArray]:
         """Values of the constraints that take long, of the designs `within` all others, else NaN, in their order."""
@@ -246,20 +227,12 @@ class Problem:
                 columns[0][within] = self.ripple.ripple(design.taken(within))
                 within = within & (columns[0] <= self.ripple.limit)
         if self.limits.build:
-            columns.append(slow_values(design, within, self.limits.build, self._pin_force))
+            columns.append(slow_values(design, within, self.limits.build, self.drive.pin_force))
         return columns
-
-    def worth(self, power: FloatArray) -> FloatArray:
-        """What is maximised, W, shape (n,); power: shape (n, sets).
-
-        Power of the first set of moments less `caution` standard deviations of the gain over the baseline.
-        """
-        doubt = self.caution * np.linalg.norm((power - self.baseline)[:, 1:], axis=1) if self.caution else 0.0
-        return np.asarray(power[:, 0] - doubt)
 
     def merit(self, evaluation: Evaluation) -> FloatArray:
         """Worth of the feasible designs, W, shape (n,); every infeasible one ranks below, by its violation."""
-        return np.where(evaluation.feasible, self.worth(evaluation.power), INFEASIBLE - evaluation.violation)
+        return np.where(evaluation.feasible, self.drive.worth(evaluation.power), INFEASIBLE - evaluation.violation)
 
     def violations(self, evaluation: Evaluation, row: int = 0) -> list[dict[str, Any]]:
         """The violated constraints of one design: name, value, limit, unit and margin."""
@@ -280,13 +253,6 @@ class Problem:
             for row in self.violations(evaluation)
         )
         return ", ".join(parts) or "the thigh swings through 180 deg or more"
-
-    def _pin_force(self, design: Design) -> float:
-        """Largest on any pin of a design, N."""
-        if self.muscles:
-            return self.muscles.pin_force(design)
-        assert self.moments, "limits of what can be built need the moments"
-        return pin_force(design, self.moments)
 
     def _worst(self, values: FloatArray) -> FloatArray:
         """Of each constraint on the turn over all riders, shape (n, constraints); values: (n * riders, constraints)."""
@@ -351,4 +317,4 @@ def make_problem(
     if muscles and (caution or ripple):
         raise InputError("caution and the limit on the ripple are for joint moments; muscles have neither")
     even = None if ripple is None else RippleLimit(ripple, moments)
-    return Problem(template, table, known, speed, caution, baseline, people, even, moments, muscles)
+    return Problem(template, table, known, speed, muscles or MomentDrive(moments, caution, baseline), people, even)

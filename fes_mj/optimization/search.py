@@ -208,6 +208,6 @@ BUDGETS = {"differential-evolution": 50_000, "cma-es": 50_000, "random-pursuit":
 MUSCLE_BUDGET = 3000
 
 
-def usual_budget(method: str, muscles: object) -> int:
-    """Evaluations of one search by a method, with muscles or (None) without."""
+def usual_budget(method: str, muscles: bool = False) -> int:
+    """Evaluations of one search by a method, with muscles or without."""
     return MUSCLE_BUDGET if muscles else BUDGETS[method]

@@ -5,21 +5,21 @@ Power is not proportional to the gear ratio, as muscles that shorten faster pull
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 
-from fes_mj.common.arrays import ComplexArray, FloatArray
+from fes_mj.common.arrays import BoolArray, FloatArray
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.design_file import load_design
-from fes_mj.linkage.inertia import body_loads
-from fes_mj.linkage.joints import JOINTS, PerJoint
+from fes_mj.linkage.joints import PerJoint
 from fes_mj.linkage.kinematics import solve
 from fes_mj.muscles.anatomy import anatomy
 from fes_mj.muscles.power import best_power, best_turn
 from fes_mj.muscles.riders import Riders
 from fes_mj.muscles.timing import ANGLES, DUTY, widths_up_to
+from fes_mj.optimization.buildable import pin_force
 from fes_mj.statics.cycles import Cycles
-from fes_mj.statics.equilibrium import equilibrium
 
 SEARCHED = 12  # members of an ensemble during a search
 
@@ -30,6 +30,9 @@ class MuscleDrive:
 
     riders: Riders
     duty: float = DUTY
+
+    proportional: ClassVar = False  # as of MomentDrive
+    known: ClassVar = ("muscles", 0.0)
 
     def __post_init__(self) -> None:
         """Raises InputError for a duty that is none."""
@@ -42,9 +45,16 @@ class MuscleDrive:
         order, count = np.argsort(turn.power_mean[:, 0]), min(SEARCHED, len(self.riders))
         return self.riders.taken(order[((np.arange(count) + 0.5) * len(order) / count).astype(int)])
 
-    def power(self, designs: Design) -> FloatArray:
-        """Mean crank power of one leg of each design, expected of the few, W, shape (designs,)."""
-        return best_power(self.few, designs, duty=self.duty)
+    def power(self, designs: Design, turn: Cycles, turns_per_s: FloatArray, within: BoolArray) -> FloatArray:
+        """As MomentDrive.power, expected of the few, shape (designs, 1); NaN of designs that are not `within`."""
+        power = np.full((designs.size, 1), np.nan)
+        if within.any():
+            power[within, 0] = best_power(self.few, designs.taken(within), duty=self.duty)
+        return power
+
+    def worth(self, power: FloatArray) -> FloatArray:
+        """What is maximised, W, shape (n,); power: shape (n, 1)."""
+        return power[:, 0]
 
     def inside(self, turn: Cycles) -> PerJoint[FloatArray]:
         """How far each joint stays within the angles for which the lengths of muscles are known, deg, (designs,)."""
@@ -58,10 +68,11 @@ class MuscleDrive:
 
         return PerJoint.of(margin)
 
+    def outside(self, turn: Cycles) -> FloatArray:
+        """Share of the turn of which nothing is known, shape (designs,): none of what is inside."""
+        return np.zeros(len(turn.turns))
+
     def pin_force(self, design: Design) -> float:
         """Largest on any pin while riding with masses, N, of a design that turns: by the few's expected moments."""
         turn, _ = best_turn(self.few, design, duty=self.duty)
-        moment = turn.moment.map(lambda moment: moment[:, 0].mean(axis=0))
-        motion = solve(design, ANGLES)
-        forces: dict[str, ComplexArray] = equilibrium(motion, moment, body_loads(motion, design.linkage.cadence))[1]
-        return max(float(np.abs(force).max()) for joint, force in forces.items() if joint not in JOINTS)
+        return pin_force(solve(design, ANGLES), turn.moment.map(lambda moment: moment[:, 0].mean(axis=0)))

@@ -1,7 +1,5 @@
 """What can be built: values of populations against those of single designs, by other ways."""
 
-from functools import partial
-
 import numpy as np
 import pytest
 
@@ -13,10 +11,10 @@ from fes_mj.optimization.buildable import (
     BuildLimits,
     clearance,
     hole_distance,
-    pin_force,
     slow_values,
     transmission_angle,
 )
+from fes_mj.optimization.moment_drive import MomentDrive
 from fes_mj.statics.cycles import cycles
 from tests.optimization.conftest import TABLE
 
@@ -44,10 +42,11 @@ def test_a_population_has_the_values_of_its_designs() -> None:
     d1 = fes_mj.load_design("d1")
     cranks = d1.linkage.crank + np.array([[0.0], [-0.002], [-0.004]])
     batch = d1.with_linkage(crank=cranks)
-    values = slow_values(batch, np.array([True, False, True]), BuildLimits(), partial(pin_force, moments=MOMENTS))
+    drive = MomentDrive(MOMENTS)
+    values = slow_values(batch, np.array([True, False, True]), BuildLimits(), drive.pin_force)
     assert np.isnan(values[1]).all()
     for row in (0, 2):
-        assert values[row].tolist() == [pin_force(batch.single(row), MOMENTS), clearance(batch.single(row))]
+        assert values[row].tolist() == [drive.pin_force(batch.single(row)), clearance(batch.single(row))]
     assert transmission_angle(batch, cycles(batch, TABLE))[2] == pytest.approx(
         transmission_angle(batch.single(2), cycles(batch.single(2), TABLE))[0]
     )

@@ -15,6 +15,7 @@ import pytest
 import fes_mj
 from fes_mj.common.provenance import digest
 from fes_mj.optimization.findings import Findings
+from fes_mj.optimization.moment_drive import MomentDrive
 from fes_mj.optimization.optimize import run_searches
 from fes_mj.optimization.search import Result
 from tests.optimization.conftest import problem_of
@@ -126,7 +127,7 @@ def test_every_number_of_a_problem_counts() -> None:
     problem = problem_of("d1")
     others = [
         problem_of("d2"),
-        replace(problem, caution=1.0),
+        replace(problem, drive=MomentDrive(caution=1.0)),
         replace(problem, limits=replace(problem.limits, foot_max=problem.limits.foot_max * (1 + 1e-15))),
         replace(problem, limits=replace(problem.limits, polygon=problem.limits.polygon + 1e-15)),
         replace(problem, joint_speed=problem.joint_speed.map(lambda speed: speed * (1 + 1e-15))),

@@ -9,6 +9,7 @@ import fes_mj
 from fes_mj.common.errors import InputError
 from fes_mj.linkage.kinematics import solve
 from fes_mj.optimization.evenness import RippleLimit
+from fes_mj.optimization.moment_drive import MomentDrive
 from fes_mj.optimization.optimize import run_searches
 from fes_mj.optimization.problem import Problem
 from fes_mj.optimization.winner import Winner, assess, gain, to_manufacturing, to_rider
@@ -96,7 +97,7 @@ def test_caution_trades_gain_for_certainty() -> None:
     for caution in (0.0, 2.0):
         own = fes_mj.load_design("d2")
         baseline = cycles(own, table).work[0] * own.linkage.cadence / (2 * np.pi)
-        problem = Problem(own, table, base.limits, base.joint_speed, caution, baseline)
+        problem = Problem(own, table, base.limits, base.joint_speed, MomentDrive(None, caution, baseline))
         x = run_searches(problem, "cma-es", budget=6000, seed=4)[0].x
         gains.append(gain(problem.evaluate(x[None]).power[0], baseline))
     assert gains[1].deviation < gains[0].deviation
