@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
 
 from fes_mj.cli.drive import DriveOptions
-from fes_mj.cli.options import Cadence, Jobs, Out, PrintOptions, warn_of
+from fes_mj.cli.options import Cadence, Jobs, Legs, Out, PrintOptions, warn_of
 from fes_mj.common.console import print_table, progress_bar, say
 from fes_mj.common.errors import InputError, require_extra
 from fes_mj.common.parallel import Workers
@@ -27,6 +27,7 @@ def sweep(
     *,
     out: Out,
     cadence: Cadence | None = None,
+    legs: Legs = 1,
     jobs: Jobs | None = None,
     cluster: str | None = None,
     csv: Path | None = None,
@@ -40,6 +41,7 @@ def sweep(
         study: Study file (.toml): analysis, grid and sample.
         out: Folder of the results, a Parquet file a chunk; made if it is not there.
         cadence: Crank speed of all points in rpm, for a study that says nothing of it; by default each design's own.
+        legs: One leg, or two half a turn apart on the same crank: how even they are together, and both simulated.
         jobs: Processes (default: one a core).
         cluster: Dask scheduler, tcp://host:port, to send the chunks to.
         csv: Write all rows as one CSV file too.
@@ -51,7 +53,7 @@ def sweep(
     if cluster is not None:
         _require_address(cluster)
     muscles = MuscleOptions(drive.timing, drive.duty, drive.muscles) if drive.drive == "muscles" else None
-    sweep = Sweep(load_study(study, cadence, muscles), out)
+    sweep = Sweep(load_study(study, cadence, muscles, legs), out)
     for moments in sweep.study.moments.values():
         warn_of(moments)
     if plot:
@@ -132,7 +134,8 @@ def _print(summary: dict[str, Any], name: str, study: Study) -> None:
 def _print_top(rows: Sequence[dict[str, Any]], study: Study) -> None:
     """The best points, with what varies among all."""
     columns = {"point": "point"} | {axis: label(axis) for axis in study.varied}
-    columns |= {"power_mean_W": "power, W", "power_sd_W": "+-, W", "simulated_power_mean_W": "simulated, W"}
+    columns |= {"power_mean_W": "power, W", "power_sd_W": "+-, W", "power_mode_W": "most probable rider, W"}
+    columns |= {"simulated_power_mean_W": "simulated, W"}
     columns |= {"extrapolated_share": "extrapolated, %"}
     shown = {name: heading for name, heading in columns.items() if any(row.get(name) is not None for row in rows)}
     print_table(

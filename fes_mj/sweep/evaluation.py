@@ -1,6 +1,6 @@
 """What a sweep finds out about each of its points: statics in a batch, and a simulated turn each."""
 
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,16 +11,24 @@ from fes_mj.common.units import RPM, turns_per_second
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.joints import JOINTS
 from fes_mj.linkage.kinematics import solve
-from fes_mj.linkage.variables import COMPONENTS, replaced
+from fes_mj.linkage.legs import all_legs
+from fes_mj.linkage.torque_source import TorqueSource
+from fes_mj.linkage.variables import COMPONENTS, crank_speed, replaced
 from fes_mj.moments.joint_moments import JointMoments
-from fes_mj.moments.torque_map import torque_map
+from fes_mj.moments.torque_map import TorqueMap, torque_map
+from fes_mj.muscles.drive import Muscles
 from fes_mj.statics.characteristics import motion_characteristics, power_characteristics
 from fes_mj.statics.cycles import Cycles, cycles
+from fes_mj.statics.drive import Drive, torque_source
 from fes_mj.statics.equilibrium import virtual_work
-from fes_mj.statics.turn import quasi_static
+from fes_mj.statics.turn import turn_points
 from fes_mj.statics.validity import obstacles
 from fes_mj.statics.work_table import WorkTable, uncertain_table
+from fes_mj.sweep.stimulated import by_muscles
 from fes_mj.sweep.study import NAMES, Study
+
+if TYPE_CHECKING:
+    from fes_mj.simulation.bench import BenchOptions
 
 Columns: TypeAlias = dict[str, NDArray[Any]]
 
@@ -53,8 +61,14 @@ def column_types(study: Study) -> dict[str, type]:
     why: None, or why there is no power. A cadence that is varied is a result as well: the same column.
     """
     axes = {axis: str if axis in NAMES else float for axis in (*study.grid, *study.sample)}
-    more = dict.fromkeys(_CHARACTERISTICS, float) if study.characteristics else {}
+    more = dict.fromkeys(_more(study), float)
     return {"point": int} | axes | _STATIC | more | (_DYNAMIC if study.analysis == "dynamic" else {})
+
+
+def _more(study: Study) -> list[str]:
+    """Quasi-static results beyond the usual: of muscles in motion the power of the rider who is simulated."""
+    simulated = [*(["power_mode_W"] if study.muscles and study.analysis == "dynamic" else ())]
+    return [*(_CHARACTERISTICS if study.characteristics else ()), *simulated]
 
 
 def evaluate(study: Study, chunk: int) -> Columns:
@@ -71,14 +85,15 @@ def evaluate(study: Study, chunk: int) -> Columns:
             if rows.size:
                 values = {variable: column[rows] for variable, column in varied.items()}
                 results = _static(design, values, moments, len(rows))
-                if study.muscles:
+                drive = study.muscles[name] if study.muscles else moments
+                if isinstance(drive, Muscles):
                     batch = replaced(design, {variable: column[:, None] for variable, column in values.items()})
-                    more = _CHARACTERISTICS if study.characteristics else ()
-                    results |= study.muscles.columns(name, batch, _each(results["cadence_rpm"], rows), more)
+                    rpm = _each(results["cadence_rpm"], rows)
+                    results |= by_muscles(drive, batch, rpm, study.legs, _more(study))
                 elif study.characteristics:
-                    results |= _characteristics(design, values, moments, results)
+                    results |= _characteristics(design, values, drive, study.legs, results)
                 if study.analysis == "dynamic":
-                    results |= _dynamic(design, values, moments, study.timestep, results["why"])
+                    results |= _dynamic(design, values, drive, study, results["why"])
                 for key, column in results.items():
                     columns[key][rows] = column
     columns["why"][columns["why"] == ""] = None
@@ -114,8 +129,8 @@ def _static(design: Design, values: Columns, moments: JointMoments, count: int) 
     return result
 
 
-def _characteristics(design: Design, values: Columns, moments: JointMoments, statics: Columns) -> Columns:
-    """Of the points of a batch that have a power; statics: their quasi-static results."""
+def _characteristics(design: Design, values: Columns, moments: JointMoments, legs: int, statics: Columns) -> Columns:
+    """Of the points of a batch that have a power, of all legs together; statics: their quasi-static results."""
     torque, rows = torque_map(moments), np.flatnonzero(statics["why"] == "")
     result = {name: np.full(len(statics["why"]), np.nan) for name in _CHARACTERISTICS}
     rpm = _each(statics["cadence_rpm"], statics["why"])
@@ -123,7 +138,7 @@ def _characteristics(design: Design, values: Columns, moments: JointMoments, sta
         block = rows[start : start + _AT_ONCE]
         motion = solve(replaced(design, {name: column[block, None] for name, column in values.items()}))
         cadence = rpm[block, None] * RPM
-        power = np.atleast_2d(cadence * virtual_work(motion, torque.along(motion, cadence)))
+        power = all_legs(np.atleast_2d(cadence * virtual_work(motion, torque.along(motion, cadence))), legs)
         for name, value in (power_characteristics(power) | motion_characteristics(motion)).items():
             result[name][block] = value
     return result
@@ -142,25 +157,29 @@ def _reasons(turn: Cycles, rpm: NDArray[Any], count: int) -> NDArray[np.object_]
     return why
 
 
-def _dynamic(
-    design: Design, values: Columns, moments: JointMoments, timestep: float | None, why: NDArray[np.object_]
-) -> Columns:
-    """One simulated turn of every point that has a power, the loop in machine code.
+def _dynamic(design: Design, values: Columns, drive: Drive, study: Study, why: NDArray[np.object_]) -> Columns:
+    """One simulated turn of every point that has a power, the loop under a torque map in machine code.
 
-    Why a run breaks down, is refused or does not agree with statics goes to `why`.
+    Of muscles it is the most probable rider. Why a run breaks down, is refused or does not agree with statics goes to
+    `why`.
     """
-    from fes_mj.simulation.bench import BenchOptions, simulate
-    from fes_mj.simulation.compiled import compiled_loop
+    from fes_mj.simulation.bench import simulate
 
-    machine_code = BenchOptions(make_loop=compiled_loop)
     result = {name: np.full(len(why), np.nan) for name in _DYNAMIC}
     for row in np.flatnonzero(why == ""):
-        point = {name: float(column[row]) for name, column in values.items()}
-        cadence = point["cadence_rpm"] * RPM if "cadence_rpm" in point else None
-        varied = replaced(design, point)
+        varied = replaced(design, {name: float(column[row]) for name, column in values.items()})
+        speed = crank_speed(varied, float(values["cadence_rpm"][row]) * RPM if "cadence_rpm" in values else None)
         try:
-            static = quasi_static(varied, moments, cadence).power_mean
-            run = simulate(varied, moments, cadence=cadence, timestep=timestep, options=machine_code)
+            torque = torque_source(drive, varied, speed)
+            static = _power(varied, torque, speed)
+            run = simulate(
+                varied,
+                drive,
+                cadence=speed,
+                timestep=study.timestep,
+                legs=study.legs,
+                options=_options(torque),
+            )
         except (UnstableError, InputError) as error:  # it breaks down, or needs more steps than there may be
             why[row] = str(error).removeprefix(f"{design.name}: ")
             continue
@@ -171,3 +190,20 @@ def _dynamic(
         for name, value in zip(result, measured, strict=True):
             result[name][row] = value
     return result
+
+
+def _options(torque: TorqueSource) -> "BenchOptions":
+    """Of a run under a torque map in machine code, of muscles not."""
+    from fes_mj.simulation.bench import BenchOptions
+
+    if not isinstance(torque, TorqueMap):
+        return BenchOptions(torque=torque)
+    from fes_mj.simulation.compiled import compiled_loop
+
+    return BenchOptions(make_loop=compiled_loop, torque=torque)
+
+
+def _power(design: Design, torque: TorqueSource, cadence: float) -> float:
+    """Quasi-static mean crank power of one leg, W; cadence: rad/s."""
+    motion = solve(design, np.linspace(0, 2 * np.pi, turn_points(design), endpoint=False))
+    return float(np.mean(cadence * virtual_work(motion, torque.along(motion, cadence))))

@@ -18,11 +18,10 @@ from fes_mj.linkage.variables import COMPONENTS
 from fes_mj.moments.files import load_moments
 from fes_mj.moments.joint_moments import GROUPS, JointMoments
 from fes_mj.moments.measurement import measured_files
-from fes_mj.muscles.riders import load_riders
+from fes_mj.muscles.drive import Muscles, load_muscles
 from fes_mj.muscles.rules import BEST
 from fes_mj.muscles.timing import DUTY, widths_up_to
 from fes_mj.simulation.time_step import LONGEST_TIMESTEP
-from fes_mj.sweep.stimulated import Stimulation
 
 ANALYSES = ("static", "dynamic")
 # A chunk is a task and a file: about a second of static, a minute of dynamic work or of muscles.
@@ -54,7 +53,8 @@ class Study(Brief):
 
     Point i takes sample point i % size; the grid's last axis is the next to turn. grid: by axis, values as in the file.
     sample: by variable, shape (size,). characteristics: whether those of the turn are
-    computed as well. files: what was read, the study file first. muscles: what drives instead of the moments.
+    computed as well. files: what was read, the study file first. legs: that pedal together. muscles: what drives
+    instead of the moments, by their names.
     """
 
     files: list[Path]
@@ -67,7 +67,8 @@ class Study(Brief):
     size: int
     designs: dict[str, Design]
     moments: dict[str, JointMoments]
-    muscles: Stimulation | None = None
+    legs: int = 1
+    muscles: dict[str, Muscles] | None = None
 
     @property
     def brief(self) -> str:
@@ -112,10 +113,11 @@ def label(axis: str) -> str:
     return ", ".join(part for part in (axis.removesuffix("_rpm"), unit) if part)
 
 
-def load_study(path: Path, cadence: float | None = None, muscles: MuscleOptions | None = None) -> Study:
+def load_study(path: Path, cadence: float | None = None, muscles: MuscleOptions | None = None, legs: int = 1) -> Study:
     """Read a study file; cadence: of all points, rpm, for a file that says nothing of it.
 
-    muscles: drive, those of the ensembles of the moments that the file names.
+    legs: one, or two half a turn apart on the same crank, which do the same. muscles: drive, those of the ensembles of
+    the moments that the file names.
     Raises InputError naming file, key and value, and what is allowed.
     """
     content = read_toml(path, "study")
@@ -148,16 +150,15 @@ def load_study(path: Path, cadence: float | None = None, muscles: MuscleOptions 
         size,
         {name: load_design(file) for name, file in zip(axes["design"], designs, strict=True)},
         {name: load_moments(file) for name, file in zip(axes["moments"], moments, strict=True)},
-        _stimulation(settings, analysis, muscles, axes["moments"]) if muscles else None,
+        legs,
+        _stimulated(settings, muscles, axes["moments"]) if muscles else None,
     )
     _check(path, study)
     return study
 
 
-def _stimulation(settings: Section, analysis: str, muscles: MuscleOptions, names: list[str]) -> Stimulation:
-    """Whose muscles drive by the names of the moments. Refuses names of which no muscles are known."""
-    if analysis == "dynamic":
-        settings.refuse("analysis", analysis, "static where muscles drive")
+def _stimulated(settings: Section, muscles: MuscleOptions, names: list[str]) -> dict[str, Muscles]:
+    """Muscles that drive by the names of the moments. Refuses names of which no muscles are known."""
     widths_up_to(muscles.duty)
     if muscles.riders and len(names) > 1:
         raise InputError(f"{settings.path}: grid.moments has {len(names)} names; --muscles is one ensemble for one")
@@ -167,7 +168,7 @@ def _stimulation(settings: Section, analysis: str, muscles: MuscleOptions, names
             f"{settings.path}: grid.moments has {unknown[0]}, of which no muscles are known; keep to "
             f"{', '.join(GROUPS)}, or give an ensemble with --muscles"
         )
-    return Stimulation(muscles.rule, muscles.duty, {name: load_riders(muscles.riders or name) for name in names})
+    return {name: load_muscles(muscles.riders or name, muscles.rule, muscles.duty) for name in names}
 
 
 def _chunk(settings: Section, analysis: str, points: int) -> int:

@@ -51,6 +51,7 @@ class Sweep(Brief):
             "chunk": study.chunk,
             "timestep": study.timestep,
             "characteristics": study.characteristics,
+            "legs": study.legs,
             "grid": study.grid,
             "sample": {name: digest(values) for name, values in study.sample.items()},
             "designs": {name: design_toml(design) for name, design in study.designs.items()},

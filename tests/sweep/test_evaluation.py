@@ -10,10 +10,11 @@ import fes_mj
 from fes_mj.common.errors import InputError, UnstableError
 from fes_mj.common.units import RPM
 from fes_mj.linkage.variables import replaced
+from fes_mj.muscles.drive import Muscles
 from fes_mj.muscles.riders import load_riders
 from fes_mj.muscles.rules import BEST, BY_ANGLE
 from fes_mj.statics.muscle_static import MuscleStatic
-from fes_mj.statics.turn import QuasiStatic
+from fes_mj.statics.turn import LegTurns, QuasiStatic
 from fes_mj.sweep.evaluation import column_types, evaluate
 from fes_mj.sweep.study import MuscleOptions, load_study
 from tests.conftest import write_study
@@ -185,17 +186,44 @@ def test_rows_of_muscles_are_those_of_the_designs_alone(tmp_path: Path) -> None:
         assert sum(why is None for why in columns["why"]) == 2
 
 
-@pytest.mark.parametrize(
-    ("text", "muscles", "said"),
-    [
-        ('[study]\nanalysis = "dynamic"\n', MuscleOptions(), "static where muscles drive"),
-        ("", MuscleOptions(duty=0), "duty is 0"),
-    ],
-)
-def test_what_muscles_cannot_do_is_refused(tmp_path: Path, text: str, muscles: MuscleOptions, said: str) -> None:
-    (tmp_path / "study.toml").write_text(text + '[grid]\ndesign = ["trt"]\n')
-    with pytest.raises(InputError, match=said):
-        load_study(tmp_path / "study.toml", muscles=muscles)
+def test_muscles_are_simulated_of_the_most_probable_rider(tmp_path: Path) -> None:
+    """Whose power by statics is beside it; where there is none, nothing is simulated."""
+    path, riders = tmp_path / "study.toml", load_riders("p1p2").taken(slice(0, 3))
+    riders.save(tmp_path / "mine.npz")
+    path.write_text('[study]\nanalysis = "dynamic"\n[grid]\ndesign = ["trt"]\nR2 = [0.16, 0.3]\n')
+    study = load_study(path, 50.0, MuscleOptions(riders=tmp_path / "mine.npz"), legs=2)
+    columns = evaluate(study, 0)
+    assert columns.keys() == column_types(study).keys()
+    design = replaced(fes_mj.load_design("trt"), {"R2": 0.16})
+    run = fes_mj.simulate(design, Muscles(riders), cadence=50 * RPM)
+    assert columns["simulated_power_mean_W"][0] == pytest.approx(run.power_mean, rel=1e-3)
+    assert columns["power_mode_W"][0] == pytest.approx(run.power_mean, rel=1e-3)
+    assert columns["why"][0] is None
+    assert columns["why"][1]
+    assert np.isnan(columns["simulated_power_mean_W"][1])
+
+
+@pytest.mark.parametrize("drive", ["moments", "muscles"])
+def test_two_legs_are_as_even_as_static_says(tmp_path: Path, drive: str) -> None:
+    """And each has the power of one alone."""
+    path, cadence, riders = tmp_path / "study.toml", 50 * RPM, load_riders("p1p2").taken([0, 1])
+    riders.save(tmp_path / "mine.npz")
+    muscles = MuscleOptions(riders=tmp_path / "mine.npz") if drive == "muscles" else None
+    path.write_text('[study]\ncharacteristics = true\n[grid]\ndesign = ["d1"]\n')
+    two, one = (evaluate(load_study(path, 50.0, muscles, legs), 0) for legs in (2, 1))
+    design, moments = fes_mj.load_design("d1"), fes_mj.load_moments("p1p2")
+    by_muscles = MuscleStatic.solve(design, riders, cadence, BEST, legs=2) if muscles else None
+    summary = (by_muscles or LegTurns.solve(design, moments, cadence, 2)).summary()
+    assert two["power_mean_W"] == one["power_mean_W"] == pytest.approx(summary["power_mean_W"], rel=1e-4)
+    for name in ("power_peak_to_peak_W", "power_peak_to_mean", "energy_fluctuation"):
+        assert two[name][0] == pytest.approx(summary[name], rel=0.02), name
+    assert two["energy_fluctuation"][0] < one["energy_fluctuation"][0]
+
+
+def test_a_duty_that_is_none_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "study.toml").write_text('[grid]\ndesign = ["trt"]\n')
+    with pytest.raises(InputError, match="duty is 0"):
+        load_study(tmp_path / "study.toml", muscles=MuscleOptions(duty=0))
 
 
 def test_moments_of_which_no_muscles_are_known_are_refused(tmp_path: Path) -> None:

@@ -90,6 +90,8 @@ def test_a_folder_of_another_study_is_left_alone(study: Path, tmp_path: Path) ->
     study.write_text(GRID.replace("seed = 3", "seed = 4"))
     with pytest.raises(InputError, match=r"different: sample\)"):
         Sweep(load_study(study), folder).run()
+    with pytest.raises(InputError, match=r"different: sample, legs|different: legs, sample"):
+        Sweep(load_study(study, legs=2), folder).run()
     (tmp_path / "mine.csv").write_text("crank_angle_deg,knee_Nm,hip_Nm\n0,1,2\n90,21,-3\n200,-5,4\n")
     study.write_text(GRID)
     with pytest.raises(InputError, match=r"different: moments"):
