@@ -1,5 +1,6 @@
 """The public names; docs/python.md shows them by task."""
 
+from fes_mj.budget.answer import answer as answer
 from fes_mj.budget.budget import error_budget as error_budget
 from fes_mj.common.errors import (
     AssemblyError as AssemblyError,

@@ -75,6 +75,13 @@ def error_budget(*legs: QuasiStatic, draws: int = DRAWS) -> ErrorBudget | None:
     return ErrorBudget(by, Spread.of(powers(uncertain, together(unknowns(), draws))), draws)
 
 
+def paper_powers(*legs: QuasiStatic, draws: int = DRAWS) -> FloatArray | None:
+    """The same powers with all unknowns drawn, W, shape (draws,), NaN where a linkage does not turn; None likewise."""
+    if any(leg.moments.covariance is None for leg in legs):
+        return None
+    return powers([UncertainPower(leg, draws) for leg in legs], together(unknowns(), draws))
+
+
 def summary(budget: ErrorBudget | None) -> dict[str, Any]:
     """The result as JSON names and units it; null where the error of the moments is not known."""
     if budget is None:

@@ -14,7 +14,7 @@ from fes_mj.common.arrays import FloatArray
 from fes_mj.common.reading import DATA, read_toml
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.design_file import identified_draws, load_design
-from fes_mj.linkage.variables import LENGTHS, component
+from fes_mj.linkage.variables import LENGTHS, component, replaced
 from fes_mj.moments.files import load_moments, sampled_coefficients
 from fes_mj.moments.joint_moments import GROUPS, JointMoments
 
@@ -44,10 +44,15 @@ class Realisations:
 def realisations(design: Design, moments: JointMoments, count: int) -> Realisations:
     """So many of each unknown, for moments with a covariance. What designs share is the same in all of them."""
     random = np.random.default_rng(_SEED)
-    errors = priors()[RIDER]["length_sd_m"] * random.standard_normal((2, count))
-    legs = {name: component(design, name) + error for name, error in zip(("thigh", "shank"), errors, strict=True)}
+    legs = _legs(design, count, random)
     drifts = random.standard_normal((count, ZONES))
     return Realisations(_coefficients(moments, count), _dimensions(design, count), legs, drifts)
+
+
+def drawn_designs(design: Design, count: int) -> Design:
+    """A batch of what a design and its rider may be, as many: what `realisations` draws of them."""
+    drawn = _dimensions(design, count) | _legs(design, count, np.random.default_rng(_SEED))
+    return replaced(design, {name: values[:, None] for name, values in drawn.items()})
 
 
 @cache
@@ -66,6 +71,11 @@ def _coefficients(moments: JointMoments, count: int) -> FloatArray:
     deviations = np.concatenate([*moments.deviations])
     scores = np.random.default_rng(_seed(moments.name)).standard_normal((count, deviations.shape[1]))
     return np.asarray(np.concatenate([*moments.coefficients]) + np.einsum("cd,fd->cf", scores, deviations))
+
+
+def _legs(design: Design, count: int, random: np.random.Generator) -> dict[str, FloatArray]:
+    errors = priors()[RIDER]["length_sd_m"] * random.standard_normal((2, count))
+    return {name: component(design, name) + error for name, error in zip(("thigh", "shank"), errors, strict=True)}
 
 
 def _dimensions(design: Design, count: int) -> dict[str, FloatArray]:

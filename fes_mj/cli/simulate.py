@@ -11,8 +11,10 @@ from cyclopts import Group, Parameter
 from cyclopts.validators import Number
 
 import fes_mj
+from fes_mj.budget.answer import Answer
 from fes_mj.budget.budget import error_budget, summary
 from fes_mj.cli import tables
+from fes_mj.cli.answers import answered, print_answer
 from fes_mj.cli.cases import checked_case
 from fes_mj.cli.drive import DriveOptions
 from fes_mj.cli.options import BearingOptions, DesignName, Flag, Out, RunOptions, needs
@@ -24,6 +26,7 @@ from fes_mj.common.writing import json_text, require_results, require_writable, 
 from fes_mj.linkage.design_file import design_path, design_toml
 from fes_mj.simulation.time_step import LONGEST_TIMESTEP
 from fes_mj.statics.muscle_static import MuscleStatic
+from fes_mj.statics.turn import LegTurns
 
 _VIDEO = Group("Video", validator=needs("--render"))
 TURN_SHOWN = (0.1, 60.0)  # s, shortest and longest of a turn in a video
@@ -68,14 +71,15 @@ def simulate(
     # bearings lose energy, which every other check takes for an error
     checks = case.checks if case.bearings else [*verify(one_leg, quick_groups(options.legs))]
     agrees = all(check.ok for check in checks)
+    answer = answered(drive, options, case.statics)
     content = (
-        _content(case, checks, provenance([design_path(design, options.dims), *inputs[1:]]))
+        _content(case, answer, checks, provenance([design_path(design, options.dims), *inputs[1:]]))
         if paths or options.json
         else {}
     )
     if paths:
         write_results(dict(zip(paths.values(), (json_text(content), *_texts(case)), strict=True)))
-    options.show(lambda: content, lambda: _print(case, checks, options.verbose))
+    options.show(lambda: content, lambda: _print(case, answer, checks, options.verbose))
     if render:
         from fes_mj.viewing.render import render_video
 
@@ -88,10 +92,11 @@ def simulate(
     return 0 if agrees else 1
 
 
-def _content(case: fes_mj.Case, checks: Sequence[Check], source: dict[str, Any]) -> dict[str, Any]:
+def _content(case: fes_mj.Case, answer: Answer, checks: Sequence[Check], source: dict[str, Any]) -> dict[str, Any]:
     """The result as JSON names and units it, and what it was made from."""
     return (
         case.summary()
+        | answer.summary()
         | ({} if isinstance(case.statics, MuscleStatic) else summary(error_budget(*case.statics.turns)))
         | {"agrees": all(check.ok for check in checks), "checks": [check.as_json() for check in checks]}
         | {"design_toml": design_toml(case.design), "provenance": source}
@@ -108,37 +113,50 @@ def _check_speed(speed: float, cadence: float) -> None:
         )
 
 
-def _print(case: fes_mj.Case, checks: Sequence[Check], verbose: bool) -> None:
-    run = case.simulation
+def _print(case: fes_mj.Case, answer: Answer, checks: Sequence[Check], verbose: bool) -> None:
+    statics, run = case.statics, case.simulation
+    powers = [("as the paper assumes, simulated, W", run.power_mean)]
+    if isinstance(statics, MuscleStatic):
+        whose = f"the most probable rider, as drawn, timing {statics.rule}"
+        powers = [(f"{whose}, W", case.static_power_mean), ("the same, simulated, W", run.power_mean)]
+    print_answer(statics, answer, *powers)
+    if isinstance(statics, MuscleStatic):
+        tables.say_stimulation(statics)
+    if case.steps.friction:
+        say(tables.friction(case.steps.friction))
+    if verbose:
+        _print_turn(case)
+    if verbose or not all(check.ok for check in checks):
+        more = [check for check in checks if not (check.ok or check in case.checks)]
+        tables.print_checks("Checks", [*case.checks, *more])
+    for turn in statics.turns:
+        tables.print_notes(turn, f"{turn.driver}: " if len(statics.turns) > 1 else "")
+    tables.conclude_checks("Dynamic and static", checks, f": mean power differs by {case.difference_text}")
+
+
+def _print_turn(case: fes_mj.Case) -> None:
+    """Print what else is known of the turn, statics beside dynamics."""
+    run, turns = case.simulation, case.statics.turns
     dynamic = (
-        tables.with_error(run.power_mean, case.statics.power_sd),  # the mean is the same functional of the moments
+        f"{run.power_mean:.3f}",
         f"{2 * np.pi * run.power_mean / run.cadence:.3f}",
         *(tables.span(ends) for ends in run.joint_range_deg),
     )
-    sides = ("",) if len(case.statics.turns) == 1 else (", right", ", left")
-    rows = zip(tables.beside(*map(tables.power_rows, case.statics.turns)), dynamic, strict=True)
+    sides = ("",) if len(turns) == 1 else (", right", ", left")
+    rows = zip(tables.beside(*map(tables.power_rows, turns)), dynamic, strict=True)
     heads = ("", *(f"quasi-static{side}" for side in sides), "dynamic")
-    print_table(tables.heading(case.static, len(run.legs)), heads, [(*row, measured) for row, measured in rows])
-    if isinstance(case.statics, MuscleStatic):
-        say("of the most probable rider; +- is over the riders who may have been measured")
-        tables.print_stimulation(case.statics)
-    else:
+    print_table("As everything is known best", heads, [(*row, measured) for row, measured in rows])
+    if isinstance(case.statics, LegTurns):
         tables.print_budget(*case.statics.turns)
-    turn = tables.beside(*map(tables.turn_rows, (case.static.summary(), case.static.summary() | case.characteristics)))
+    summary = case.static.summary()
+    rows_of_turn = tables.beside(*map(tables.turn_rows, (summary, summary | case.characteristics)))
     together = "dynamic" if len(run.legs) == 1 else "dynamic, both legs"
-    print_table("The turn", ("", f"quasi-static{sides[0]}", together), turn)
+    print_table("The turn", ("", f"quasi-static{sides[0]}", together), rows_of_turn)
     tables.print_forces(case.joint_forces)
     tables.print_friction(case.steps.friction)
-    tables.print_checks(
-        "Checks", [*case.checks, *(check for check in checks if not (check.ok or check in case.checks))]
-    )
-    if verbose:
-        terms = [(name.replace("_", " "), f"{value:.5f}") for name, value in run.energy.as_json().items()]
-        print_table("Energy over the measured turns", ("term", "J"), terms)
-        print_table("Constraint forces", ("loop", "mean N", "largest N"), tables.force_rows(run.loop_force))
-    for quasi_static in case.statics.turns:
-        tables.print_notes(quasi_static, f"{quasi_static.driver}: " if len(case.statics.turns) > 1 else "")
-    tables.conclude_checks("Dynamic and static", checks, f": mean power differs by {case.difference_text}")
+    terms = [(name.replace("_", " "), f"{value:.5f}") for name, value in run.energy.as_json().items()]
+    print_table("Energy over the measured turns", ("term", "J"), terms)
+    print_table("Constraint forces", ("loop", "mean N", "largest N"), tables.force_rows(run.loop_force))
 
 
 def _texts(case: fes_mj.Case) -> tuple[str, str]:

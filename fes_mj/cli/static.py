@@ -1,37 +1,46 @@
 """`fes_mj static`: the quasi-static solver alone, of one design or of several side by side."""
 
-from collections.abc import Sequence
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
+from fes_mj.budget.answer import Answer
+from fes_mj.budget.budget import error_budget, summary
 from fes_mj.cli import tables
+from fes_mj.cli.answers import Turns, answered, print_answer
 from fes_mj.cli.drive import DriveOptions
 from fes_mj.cli.options import BearingOptions, DesignName, Flag, RunOptions
 from fes_mj.common.console import print_table, say
+from fes_mj.common.provenance import provenance
+from fes_mj.common.units import RPM
+from fes_mj.linkage.design_file import design_path, design_toml
 from fes_mj.linkage.turning import CRANK_ZERO, FROM_TOP, turning
-from fes_mj.moments.uncertainty import with_sd
-from fes_mj.statics.friction import BearingLoss, Bearings
+from fes_mj.muscles.rules import BEST
+from fes_mj.statics.friction import BearingLoss
 from fes_mj.statics.joint_forces import JointForces
 from fes_mj.statics.muscle_static import MuscleStatic
-from fes_mj.statics.turn import DrivenTurn, LegTurns, QuasiStatic, quasi_static
+from fes_mj.statics.turn import LegTurns, QuasiStatic, quasi_static
 
 
-class Result(Protocol):
+class Result(Turns, Protocol):
     """What moments and muscles have in common: a turn of one leg or several, with its mean power, W."""
 
     @property
-    def first(self) -> DrivenTurn: ...
-    @property
-    def turns(self) -> Sequence[DrivenTurn]: ...
-    @property
-    def legs(self) -> int: ...
-    @property
     def power_mean(self) -> float: ...
-    @property
-    def power_sd(self) -> float | None: ...
     def ratio(self, other: Any) -> tuple[float, float | None]: ...
     def summary(self) -> dict[str, Any]: ...
+
+
+class Answered(NamedTuple):
+    """A design of the command line: its turn, the two numbers, what its bearings lose."""
+
+    result: Result
+    answer: Answer
+    loss: BearingLoss | None
+
+    @property
+    def name(self) -> str:
+        return self.result.first.design.name
 
 
 def static(
@@ -48,91 +57,101 @@ def static(
     Args:
         curves: Also the curves over the turn: a row every 10 deg, with --json 360 points.
     """
+    friction = bearings.load()
 
-    def solved(name: str) -> Result:
+    def solved(name: str) -> Answered:
         by_muscles = drive.drive == "muscles"
-        return drive.solve(options, name) if by_muscles else LegTurns.solve(*options.load(name), options.legs)
+        result = drive.solve(options, name) if by_muscles else LegTurns.solve(*options.load(name), options.legs)
+        loss = BearingLoss(JointForces(result.first), friction) if friction else None
+        return Answered(result, answered(drive, options, result), loss)
 
-    results, friction = [solved(name) for name in (design, *others)], bearings.load()
+    designs = [solved(name) for name in (design, *others)]
+    source = provenance([design_path(name, options.dims) for name in (design, *others)] + options.inputs())
     if others:
-        options.show(lambda: _comparison(results, curves, friction), lambda: _print_comparison(results, friction))
+        options.show(
+            lambda: _comparison(designs, curves) | {"provenance": source},
+            lambda: _print_comparison(designs, options.verbose),
+        )
     else:
         options.show(
-            lambda: _content(results[0], curves, friction),
-            lambda: _print(results[0], curves, friction, options.verbose),
+            lambda: _content(designs[0], curves) | {"provenance": source},
+            lambda: _print(designs[0], curves, options.verbose),
         )
 
 
-def _loss(result: Result, bearings: Bearings | None) -> BearingLoss | None:
-    return BearingLoss(JointForces(result.first), bearings) if bearings else None
-
-
-def _content(result: Result, curves: bool, bearings: Bearings | None) -> dict[str, Any]:
+def _content(design: Answered, curves: bool) -> dict[str, Any]:
     """The result of one design as JSON names and units it."""
-    content = result.summary()
+    result = design.result
+    content = result.summary() | design.answer.summary() | {"design_toml": design_toml(result.first.design)}
     if isinstance(result, LegTurns):
-        from fes_mj.budget.budget import error_budget, summary
-
         content |= summary(error_budget(*result.turns))
-    loss = _loss(result, bearings)
-    content["friction_loss_W"] = loss.power if loss else 0.0
+    content["friction_loss_W"] = design.loss.power if design.loss else 0.0
     return content | JointForces(result.first).summary() | (_curves(result, 360) if curves else {})
 
 
-def _comparison(results: list[Result], curves: bool, bearings: Bearings | None) -> dict[str, Any]:
-    """Several designs as JSON, and the mean power of each per the first's."""
-    keys = ("design", "power_ratio", "power_ratio_sd")
-    ratios = [(result.first.design.name, *result.ratio(results[0])) for result in results]
-    return {
-        "designs": [_content(result, curves, bearings) for result in results],
-        "ratios": [dict(zip(keys, ratio, strict=True)) for ratio in ratios],
-    }
+def _comparison(designs: list[Answered], curves: bool) -> dict[str, Any]:
+    """Several designs as JSON, and the powers of each per the first's."""
+
+    def ratio(design: Answered) -> dict[str, Any]:
+        value, deviation = design.result.ratio(designs[0].result)
+        of_both = zip(("paper", "rider"), design.answer.per(designs[0].answer), strict=True)
+        named = {"design": design.name, "power_ratio": value, "power_ratio_sd": deviation}
+        for name, estimate in of_both:
+            named |= {f"{name}_power_ratio": estimate and estimate.value}
+            named |= {f"{name}_power_ratio_interval": estimate and estimate[1:]}
+        return named
+
+    return {"designs": [_content(design, curves) for design in designs], "ratios": [*map(ratio, designs)]}
 
 
-def _print(result: Result, curves: bool, bearings: Bearings | None, verbose: bool) -> None:
-    first, turns = result.first, result.turns
-    sides = ("quasi-static",) if len(turns) == 1 else ("right", "left")
-    rows = tables.beside(*map(tables.power_rows, turns))
-    print_table(tables.heading(first, result.legs), ("", *sides), rows)
+def _print(design: Answered, curves: bool, verbose: bool) -> None:
+    result, turns = design.result, design.result.turns
+    of_rule = [] if not isinstance(result, MuscleStatic) or result.rule == BEST else [(result.rule, result.power_mean)]
+    print_answer(result, design.answer, *((f"stimulated {rule}, expected, W", power) for rule, power in of_rule))
     if isinstance(result, MuscleStatic):
-        say("+- is over the riders who may have been measured")
-        tables.print_stimulation(result)
-    elif verbose and isinstance(result, LegTurns):
-        tables.print_budget(*result.turns)
-    elif result.power_sd is not None:
-        say("+- is the error of the moments alone; --verbose adds the whole error budget")
-    together = "quasi-static" if result.legs == 1 else "both legs"
-    print_table("The turn", ("", together), tables.turn_rows(result.summary()))
-    tables.print_forces(JointForces(first))
-    tables.print_friction(_loss(result, bearings))
+        tables.say_stimulation(result)
+    if design.loss:
+        say(tables.friction(design.loss))
     if verbose:
-        print_table("Joint reactions", ("joint", "mean N", "largest N"), tables.force_rows(first.reactions))
+        sides = ("quasi-static",) if len(turns) == 1 else ("right", "left")
+        rows = tables.beside(*map(tables.power_rows, turns))
+        print_table("As everything is known best", ("", *sides), rows)
+        if isinstance(result, LegTurns):
+            tables.print_budget(*result.turns)
+        together = "quasi-static" if result.legs == 1 else "both legs"
+        print_table("The turn", ("", together), tables.turn_rows(result.summary()))
+        tables.print_forces(JointForces(result.first))
+        tables.print_friction(design.loss)
+        print_table("Joint reactions", ("joint", "mean N", "largest N"), tables.force_rows(result.first.reactions))
     if curves:
         _print_curves(_curves(result, 36))
     for turn in turns:
         tables.print_notes(turn, f"{turn.driver}: " if len(turns) > 1 else "")
 
 
-def _print_comparison(results: list[Result], bearings: Bearings | None) -> None:
-    """One column a design."""
-    summaries, ratios = [result.summary() for result in results], [result.ratio(results[0]) for result in results]
-    rows = [
-        ("cadence, rpm", *(f"{content['cadence_rpm']:.1f}" for content in summaries)),
-        (
-            "mean crank power of one leg, W",
-            *(tables.with_error(result.power_mean, result.power_sd) for result in results),
-        ),
-        ("  per the first design's", *(with_sd(ratio, deviation or None, 3) for ratio, deviation in ratios)),
-    ]
-    rows += tables.beside(*(tables.power_rows(result.first)[1:] for result in results))
-    rows += tables.beside(*map(tables.turn_rows, summaries))
-    if bearings:
-        losses = [loss.power for result in results if (loss := _loss(result, bearings))]
-        rows.append(("lost in the bearings, W", *(f"{loss:.2f}" for loss in losses)))
-    names = [result.first.design.name for result in results]
-    print_table(f"{results[0].first.driver}, quasi-static", ("", *names), rows)
-    for result in results:
-        tables.print_notes(result.first, f"{result.first.design.name}: ")
+def _print_comparison(designs: list[Answered], verbose: bool) -> None:
+    """A row a design; with more, a column a design."""
+    base = designs[0]
+    rows = []
+    for design in designs:
+        answer, (paper, rider) = design.answer, design.answer.per(base.answer)
+        estimates = ((paper, 2), (answer.rider_power, 1), (rider, 2), (answer.rider_ratio, 2))
+        cells = [estimate.text(digits) if estimate else "-" for estimate, digits in estimates]
+        assumed = answer.paper_power.text(2) if answer.paper_power else tables.or_dash(answer.paper_mean, ".2f")
+        rows.append((design.name, f"{design.result.first.cadence / RPM:.1f}", assumed, *cells))
+    per = f"per {base.name}"
+    heads = ("design", "rpm", "as the paper assumes, W", per, "for a rider, W", per, "per equally timed TRT")
+    print_table(f"{base.result.first.driver}; mean crank power of a leg (5 to 95 %)", heads, rows)
+    for design in designs:
+        if design.loss:
+            say(f"{design.name}: {tables.friction(design.loss)}")
+    if verbose:
+        results = [design.result for design in designs]
+        beside = tables.beside(*(tables.power_rows(result.first) for result in results))
+        beside += tables.beside(*(tables.turn_rows(result.summary()) for result in results))
+        print_table("As everything is known best", ("", *(design.name for design in designs)), beside)
+    for design in designs:
+        tables.print_notes(design.result.first, f"{design.name}: ")
 
 
 def _curves(result: Result, points: int) -> dict[str, Any]:

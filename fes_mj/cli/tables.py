@@ -13,7 +13,7 @@ from fes_mj.common.units import RPM
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.turning import CRANK_ZERO
 from fes_mj.statics.friction import BearingLoss
-from fes_mj.statics.joint_forces import NET_FORCE, JointForces, KneeLoad, peaks
+from fes_mj.statics.joint_forces import JointForces, KneeLoad, peaks
 from fes_mj.statics.muscle_static import MuscleStatic
 from fes_mj.statics.turn import DrivenTurn, QuasiStatic
 
@@ -50,34 +50,36 @@ def turn_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
     ]
 
 
-def print_stimulation(result: MuscleStatic) -> None:
+def say_stimulation(result: MuscleStatic) -> None:
     """Print when each group is stimulated, where the rule has windows."""
     windows = result.windows_deg or {}
-    rows = [
-        (group, *(["-", "-"] if ends is None else [f"{end:.0f}" for end in ends])) for group, ends in windows.items()
-    ]
-    if rows:
-        print_table(f"Stimulation, deg of crank; 0: {CRANK_ZERO}", ("muscles", "on", "off"), rows)
+    ends = {group: "never" if pair is None else "{:.0f} to {:.0f}".format(*pair) for group, pair in windows.items()}
+    if ends:
+        each = ", ".join(f"{group} {pair}" for group, pair in ends.items())
+        say(f"stimulated, deg of crank, 0 where {CRANK_ZERO}: {each}")
 
 
 def print_forces(joint_forces: JointForces) -> None:
-    """Print the peak forces of the joints, the knee's load in body weights, and what that leaves out."""
+    """Print the peak forces of the joints, the knee's load in body weights; joint_forces.NET_FORCE is left out."""
     both = (joint_forces.static.reactions, joint_forces.with_masses)
     cells = [(joint.replace("_", " "), *(f"{peaks(forces)[joint]:.0f}" for forces in both)) for joint in both[0]]
     knees = [joint_forces.knee(forces) for forces in both]
     cells += [
         (f"knee {kind}, body weights", *(f"{getattr(knee, kind):.3f}" for knee in knees)) for kind in KneeLoad._fields
     ]
-    print_table("Largest forces, N", ("joint", "moments alone", "with masses"), cells)
-    say(f"note: {NET_FORCE[0].lower()}{NET_FORCE[1:]}")
+    print_table("Largest net forces, N", ("joint", "moments alone", "with masses"), cells)
+
+
+def friction(loss: BearingLoss) -> str:
+    """What the bearings of one leg's linkage lose, in words."""
+    return f"lost in the bearings: {loss.power:.3f} W, {loss.forces.static.power_mean - loss.power:.3f} W left"
 
 
 def print_friction(loss: BearingLoss | None) -> None:
     """Print what each bearing of one leg's linkage loses, if there is friction."""
     if loss:
         rows = [(joint.replace("_", " "), f"{power:.3f}") for joint, power in loss.by_joint.items()]
-        left = f"{loss.power:.3f} W lost, {loss.forces.static.power_mean - loss.power:.3f} W left"
-        print_table(f"Friction in the bearings: {left}", ("bearing", "loss, W"), rows)
+        print_table("Friction in the bearings", ("bearing", "loss, W"), rows)
 
 
 def beside(*results: list[tuple[str, str]]) -> list[tuple[str, ...]]:
@@ -138,9 +140,11 @@ def print_checks(title: str, checks: Sequence[Check]) -> None:
 
 
 def conclude_checks(who: str, checks: Sequence[Check], agreeing: str = "") -> None:
-    """Say whether two ways to the same numbers agree, and what more there is to say if they do."""
+    """Say whether two ways to the same numbers agree, and what more there is to say if they do; the worst is named."""
     failed = ", ".join(check.name for check in checks if not check.ok)
     if failed:
         conclude(False, f"{who} do not agree", f": {failed}; `fes_mj validate --explain CHECK` says more.")
     else:
-        conclude(True, f"{who} agree", f"{agreeing}.")
+        worst = max(checks, key=lambda check: check.factor)
+        limit = f"worst of {len(checks)} checks: {worst.name}, at {worst.factor:.2g} of its limit"
+        conclude(True, f"{who} agree", f"{agreeing}; {limit}.")

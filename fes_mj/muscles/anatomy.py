@@ -69,6 +69,12 @@ class Anatomy:
         scales = (sum(theirs[part] for part in along) / sum(own[part] for part in along) for along in self.segments)
         return np.stack([np.atleast_2d(scale) for scale in np.broadcast_arrays(*scales)])
 
+    def in_range(self, flexion: Flexion) -> BoolArray:
+        """Whether lengths are known at every angle of a turn, the last axis of flexion."""
+        ranges = ((flexion.hip, self.hip_deg), (flexion.knee, self.knee_deg))
+        inside = [(np.radians(low) <= angle) & (angle <= np.radians(high)) for angle, (low, high) in ranges]
+        return np.asarray(np.logical_and(*inside).all(axis=-1))
+
     def require_range(
         self, name: str, flexion: Flexion, advice: str = "move the seat, or leave out --drive muscles"
     ) -> None:

@@ -30,6 +30,12 @@ class Flexion(NamedTuple):
         knee, hip = (np.atleast_2d(np.pi - angle) for angle in motion.joint_angle)
         return cls(hip + hip_offset, knee)
 
+    @classmethod
+    def of_each(cls, motion: Motion, hip_offset: FloatArray) -> "Flexion":
+        """Of every member along the motion of a design of its own, shape (members, 1, angles)."""
+        knee, hip = (np.pi - angle[:, None] for angle in motion.joint_angle)
+        return cls(hip + hip_offset, knee)
+
 
 class Values(NamedTuple):
     """Of each surface, and its derivatives by hip and knee flexion (rad), shape (surfaces, ...)."""

@@ -1,6 +1,6 @@
 """What muscles pull with along a motion, per activation: forces, joint moments, power."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -21,7 +21,7 @@ class Pull:
     """Fully activated muscles of every member along the motion of every design.
 
     Shape (muscles, members, designs, angles): force, N; lengths, m, and speed, m/s, at which they grow, of muscles as
-    large as the anatomy's. scale: by which the rider's are larger, shape (muscles, 1, designs, 1).
+    large as the anatomy's. scale: by which the rider's are larger, shape (muscles, members or 1, designs, 1).
     """
 
     anatomy: Anatomy
@@ -63,6 +63,13 @@ def pull(riders: Riders, motion: Motion, cadence: Any, muscles: Anatomy | None =
     flexion = riders.flexion(motion)
     rate = motion.joint_rate.map(lambda rate: -cadence * np.atleast_2d(rate))
     return pull_at(riders, flexion, Flexion(rate.hip, rate.knee), motion.design.rider, muscles)
+
+
+def pull_each(riders: Riders, motion: Motion, cadence: float) -> Pull:
+    """Of every member along the motion of a design of its own, of a batch as large; the Pull has one design."""
+    rate = motion.joint_rate.map(lambda rate: -cadence * rate[:, None])
+    pulled = pull_at(riders, riders.flexion_each(motion), Flexion(rate.hip, rate.knee), motion.design.rider)
+    return replace(pulled, scale=pulled.scale.swapaxes(1, 2))
 
 
 def pull_at(riders: Riders, flexion: Flexion, rate: Flexion, rider: Rider, muscles: Anatomy | None = None) -> Pull:

@@ -57,6 +57,10 @@ class Riders:
         """Hip and knee flexion along a motion, rad: the hip's of every member, shape (members, designs, angles)."""
         return Flexion.along(motion, np.radians(self["hip_offset_deg"]))
 
+    def flexion_each(self, motion: Motion) -> Flexion:
+        """The same of every member along the motion of a design of its own, shape (members, 1, angles)."""
+        return Flexion.of_each(motion, np.radians(self["hip_offset_deg"]))
+
     @property
     def fall(self) -> FloatArray:
         """Time constant of the fall of activation, s, shape (members, 1, 1)."""

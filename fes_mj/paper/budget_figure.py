@@ -1,17 +1,20 @@
-"""The figure of the error budget: who is to blame, and how probable each gain is."""
+"""The figures of what is not known: both numbers of each design; who is to blame, and how probable each gain is."""
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from fes_mj.common.style import PARTS
+from fes_mj.budget.answer import Answer
+from fes_mj.common.style import FAINT, PARTS, SERIES
 from fes_mj.moments.joint_moments import GROUPS
 from fes_mj.paper.error_budget import GAINS, Budgets, ratios
 from fes_mj.paper.printed import SIX_BARS
 
 _RATIOS = np.linspace(0, 3, 301)
+_BOTH = ("as the paper assumes", "for a rider: muscles, best timing")
 _TICKS = (0.5, 1.0, *GAINS, 2.5)
 
 
@@ -27,6 +30,24 @@ def budget_figure(budgets: Budgets) -> Figure:
     for (first, last), label in zip(axes, ("share of the variance, %", "probability of more, %"), strict=True):
         first.set_ylabel(label)
         last.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), reverse=last is axes[0, 1])
+    return figure
+
+
+def answer_figure(answers: Mapping[tuple[str, str], Answer]) -> Figure:
+    """Both powers of every six-bar per the TRT's, with their intervals, a panel a group."""
+    figure = Figure(figsize=(7.2, 2.9), layout="constrained")
+    axes: Any = figure.subplots(1, len(GROUPS), sharey=True)
+    for ax, group in zip(axes, GROUPS, strict=True):
+        per_trt = [answers[name, group].per(answers["trt", group]) for name in SIX_BARS]
+        for place, (label, colour) in enumerate(zip(_BOTH, SERIES, strict=False)):
+            value, low, high = np.array([both[place] for both in per_trt], float).T
+            rows = np.arange(len(SIX_BARS)) + 0.14 * (2 * place - 1)
+            ax.errorbar(value, rows, xerr=(value - low, high - value), fmt="o", color=colour, label=label, capsize=3)
+        ax.axvline(1, color=FAINT, lw=1)
+        ax.set(xlabel="power per the TRT's", xlim=(0, 2.5), yticks=range(len(SIX_BARS)), ylim=(3.5, -0.5))
+        ax.set_yticklabels([name.upper() for name in SIX_BARS])
+        ax.set_title(f"riders {group.upper()}", loc="left", fontsize=9, weight="bold")
+    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=2)
     return figure
 
 
@@ -50,6 +71,6 @@ def _curves(ax: Axes, budgets: Budgets, group: str) -> None:
         above = 100 * (1 - np.searchsorted(ratio, _RATIOS, side="right") / ratio.size)
         ax.plot(_RATIOS, above, color=colour, label=name.upper())
     ax.set(xlabel="ratio", xlim=(0.2, 2.8), ylim=(0, 103), xticks=_TICKS)
-    ax.set_xticklabels([f"{tick:g}" for tick in _TICKS], fontsize=7)
+    ax.set_xticklabels([f"{tick:g}" for tick in _TICKS], fontsize=8)
     for gain in GAINS:
         ax.axvline(gain, color="black", lw=0.7, ls=":")

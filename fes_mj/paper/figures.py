@@ -17,7 +17,7 @@ from fes_mj.moments.fourier import TERMS
 from fes_mj.moments.joint_moments import GROUPS
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.moments.uncertainty import instant_power_weights
-from fes_mj.paper.budget_figure import budget_figure
+from fes_mj.paper.budget_figure import answer_figure, budget_figure
 from fes_mj.paper.evidence import DIRECTIONS
 from fes_mj.paper.known import BASES, Known, rms
 from fes_mj.paper.printed import SIX_BARS
@@ -206,6 +206,7 @@ FIGURES: dict[str, Callable[[Runs], Figure]] = {
     "scores": scores,
     "who-can-ride": lambda runs: population_figure([*runs.people.values()]),
     "riding": riding,
+    "two-numbers": lambda runs: answer_figure(runs.answers),
     "error-budget": lambda runs: budget_figure(runs.budgets),
 }
 

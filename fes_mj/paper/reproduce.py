@@ -62,7 +62,8 @@ def _pages(runs: Runs) -> dict[str, list[Table]]:
         *(recovery.evidence_table, recovery.left_out_table, recovery.calibration_table, recovery.sensitivity_table),
         *(recovery.statement_table, recovery.knee_table, share_table, recovery.rounding_table),
     )
-    ranges, of_powers = identification.ranges_table(), (tables.power_table, tables.gain_table, tables.motion_table)
+    ranges = identification.ranges_table()
+    of_powers = (tables.answer_table, tables.power_table, tables.gain_table, tables.motion_table)
     criteria = (metrics.size_table, metrics.continuity_table, metrics.distribution_table, metrics.ranking_table)
     rides = (riding.speed_table, riding.start_table, riding.gear_table, riding.transmission_table)
     of_gains = (gains.knee_speed_table, gains.smoothness_table)

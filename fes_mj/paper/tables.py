@@ -4,6 +4,7 @@ from itertools import product
 
 import numpy as np
 
+from fes_mj.budget.answer import Answer
 from fes_mj.common.markdown import Table
 from fes_mj.common.units import RPM
 from fes_mj.fit.population import GRADES, PEOPLE, SEATS, PopulationFit
@@ -16,6 +17,23 @@ from fes_mj.paper.runs import Runs, joint_speed
 from fes_mj.statics.turn import ratio_sd
 
 POWER_ROUNDING = 0.005  # W, Table 1 is rounded to 0.01 W
+
+
+@table("answer")
+def answer_table(runs: Runs) -> Rows:
+    """Both numbers of every design, each with its interval, and how probably a rider has more than elsewhere."""
+    for (name, group), answer in runs.answers.items():
+        trt, r1 = (runs.answers[other, group] for other in ("trt", "r1"))
+        estimates = ((answer.paper_power, 2), (answer.per(trt)[0], 2), (answer.rider_power, 1), (answer.rider_ratio, 2))
+        more = (None if other is answer else _share_above(answer, other) for other in (trt, r1))
+        yield name.upper(), group, *(estimate and estimate.text(digits) for estimate, digits in estimates), *more
+
+
+def _share_above(one: Answer, other: Answer) -> float:
+    """Of the riders, those who have more power on one design than on the other, %; who cannot turn has none."""
+    assert one.rider is not None
+    assert other.rider is not None
+    return float(100 * np.mean(np.nan_to_num(one.rider) > np.nan_to_num(other.rider)))
 
 
 @table("power")

@@ -131,7 +131,7 @@ def test_two_files_are_the_two_legs(capsys: pytest.CaptureFixture[str], tmp_path
     alone = [answer(capsys, "static", "d1", "--moments", str(path))[1]["power_mean_W"] for path in (TRIAL, own)]
     assert both["static_power_mean_W"] == pytest.approx(sum(alone) / 2)
     assert both["power_mean_W"] == pytest.approx(sum(alone) / 2, rel=5e-4)
-    code, out, _ = result(capsys, "simulate", "d1", "--legs", "2", *pair)
+    code, out, _ = result(capsys, "simulate", "d1", "--legs", "2", "-v", *pair)
     assert code == 0
     assert "quasi-static, right" in out
 

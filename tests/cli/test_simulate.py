@@ -27,14 +27,22 @@ def test_simulate_json_has_the_promised_keys(capsys: pytest.CaptureFixture[str])
     assert {"name", "value", "limit", "ok"} <= set(content["checks"][0])
     assert all(check["ok"] for check in content["checks"])
     static = json.loads(result(capsys, "static", "r1", "--group", "p1p3", "--json")[1])
-    for key in ("power_sd_total_W", "power_sd_by"):  # the mean is the same function of what is not known
+    for key in ("power_sd_total_W", "power_sd_by", "rider_power_mean_W", "rider_power_per_trt_interval"):
         assert content[key] == static[key]
+    assert content["paper_power_mean_W"] == content["static_power_mean_W"]
+
+
+def test_what_is_asked_is_short(capsys: pytest.CaptureFixture[str]) -> None:
+    for command in (("simulate", "d2"), ("simulate", "r2", "--drive", "muscles")):
+        lines = result(capsys, *command)[1].splitlines()
+        assert len(lines) <= 12
+        assert "worst of" in lines[-1]
 
 
 def test_tables_carry_units_and_the_verdict(capsys: pytest.CaptureFixture[str]) -> None:
     code, out, _ = result(capsys, "simulate", "trt", "-v", "--legs", "2", "--cadence", "55")
     assert code == 0
-    for words in ("mean crank power, W", "knee angle, deg", "55.0 rpm", "Dynamic and static agree", "Energy over", "N"):
+    for words in ("mean crank power", "knee angle, deg", "55.0 rpm", "Dynamic and static agree", "Energy over", "N"):
         assert words in out
     code, out, _ = result(capsys, "static", "r1", "-v")
     assert (code, "Joint reactions" in out) == (0, True)

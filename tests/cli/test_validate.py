@@ -129,7 +129,7 @@ def test_every_check_of_simulate_can_be_explained(capsys: pytest.CaptureFixture[
 
 
 def test_every_check_printed_by_simulate_is_named_as_explain_knows_it(capsys: pytest.CaptureFixture[str]) -> None:
-    run(["simulate", "r1"])
+    run(["simulate", "r1", "-v"])
     lines = capsys.readouterr().out.split("Checks")[1].splitlines()
     names = [line.split("  ")[1].strip() for line in lines if line.rstrip().endswith("ok")]
     assert len(names) >= 6

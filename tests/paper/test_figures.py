@@ -29,7 +29,7 @@ def facts() -> Known:
 @pytest.fixture(scope="module")
 def runs(facts: Known) -> Runs:
     """What the figures over a turn need."""
-    runs = Runs(facts, static={}, printed={}, dynamic={}, people={}, rides=[], budgets={}, readings={})
+    runs = Runs(facts, static={}, printed={}, dynamic={}, answers={}, people={}, rides=[], budgets={}, readings={})
     for name in ("trt", "r2", "d1"):
         for group in GROUPS:
             design, moments = fes_mj.load_design(name), fes_mj.load_moments(group)
