@@ -14,12 +14,10 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 Value = TypeVar("Value")
 
 COMPILED = find_spec("numba") is not None
-_files: set[str] = set()  # in which functions of machine code stand
 
 
 def machine_code(function: Function) -> Function:
     """The function in machine code, made when it is first called or a caller's is made."""
-    _files.add(function.__code__.co_filename)
     return _njit(function)
 
 
@@ -36,8 +34,16 @@ def kept_machine_code(function: Function) -> Function:
 
 
 def sources(*structures: type) -> int:
-    """Digest of the files in which the functions made so far stand, and the named tuples that they are given."""
-    files = _files | {str(sys.modules[structure.__module__].__file__) for structure in structures}
+    """Digest of the files in which the calling module's machine code and all that it calls stands, and the named tuples
+    that it is given; the same whatever else was imported before.
+    """
+    files, scopes = set(), [sys._getframe(1).f_globals]
+    while scopes:
+        for function in [value.py_func for value in scopes.pop().values() if hasattr(value, "py_func")]:
+            if function.__code__.co_filename not in files:
+                files.add(function.__code__.co_filename)
+                scopes.append(function.__globals__)
+    files |= {str(sys.modules[structure.__module__].__file__) for structure in structures}
     digest = hashlib.sha256(b"".join(Path(file).read_bytes() for file in sorted(files)))
     return int.from_bytes(digest.digest()[:7])
 
