@@ -5,7 +5,8 @@ BIN = $(VENV)/bin
 EXTRAS = video,report,paper,explore,optimize,build,step,cluster,c3d
 GROUPS = --group test --group lint --group docs --group mjx
 PIP = $(BIN)/pip install --quiet -c constraints.txt
-PYTEST = $(BIN)/python -m pytest --numprocesses auto --dist worksteal
+# Python keeps what it compiles, even where the environment says otherwise: half of what a worker does before its first test.
+PYTEST = PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest --numprocesses auto --dist worksteal
 
 .PHONY: demo test test-long lint docs format benchmark catalogue reproduce verification models pictures readers dist clean
 

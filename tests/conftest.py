@@ -1,8 +1,10 @@
 """Designs, moments and a study that many tests share."""
 
+import gc
 import os
 import shutil
 import signal
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +16,7 @@ import pytest
 from hypothesis import settings
 
 import fes_mj
+from fes_mj.fit.search import best_seats
 from fes_mj.linkage.design_file import DESIGNS
 from fes_mj.moments.joint_moments import GROUPS
 from fes_mj.sweep.study import load_study
@@ -23,6 +26,16 @@ from fes_mj.sweep.sweep import Sweep
 signal.signal(signal.SIGINT, signal.default_int_handler)
 if hasattr(signal, "SIGHUP"):
     signal.signal(signal.SIGHUP, signal.SIG_DFL)
+
+# Imports and collected tests stay until the end: no looking through them for garbage, in which a quarter of the
+# time of collecting them would go.
+gc.disable()
+
+
+def pytest_collection_finish() -> None:
+    gc.freeze()
+    gc.enable()
+
 
 # The same examples in every run: a failure can be repeated; continuous integration has four times as many.
 settings.register_profile("fes_mj", derandomize=True, deadline=None, max_examples=25)
@@ -49,6 +62,12 @@ def smooth_moments() -> fes_mj.JointMoments:
     return fes_mj.JointMoments(
         "smooth", angle, 9 + 11 * np.cos(angle - 1.2) + 2 * np.sin(3 * angle), 7 * np.sin(angle + 0.4)
     )
+
+
+@pytest.fixture
+def coarse_seats(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Seats that are sought among few: for tests of anything but how good they are, which is fit/test_search.py's."""
+    monkeypatch.setattr("fes_mj.fit.seat.best_seats", partial(best_seats, generations=(10, 10, 10)))
 
 
 # Of the fixture `study`.

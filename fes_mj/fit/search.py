@@ -46,7 +46,7 @@ def best_seats(
     axes = [np.linspace(*ends, count) for ends, count in zip(limits, _GRID, strict=True)]
     grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
     tried, known = scored(np.broadcast_to(np.vstack([np.zeros((1, 3)), grid]), (len(legs), len(grid) + 1, 3)))
-    for aim, count in enumerate(generations, 1):
+    for aim, count in enumerate(generations if np.any(low < high) else (), 1):  # a fixed seat is found
         order = np.argsort(losses(known, known, aim, _SLACK), axis=1, kind="stable")
         population, scores = _taken((tried, known), order[:, :_POPULATION])
         for generation in range(count):

@@ -11,6 +11,7 @@ from tests.cli.conftest import answer, result
 MAN = ("--percentile", "50", "--sex", "male")
 
 
+@pytest.mark.usefixtures("coarse_seats")
 def test_json_and_design_file_agree(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "mine.toml"
     code, content = answer(capsys, "fit", "r1", *MAN, "-o", str(out))
@@ -28,6 +29,7 @@ def test_json_and_design_file_agree(tmp_path: Path, capsys: pytest.CaptureFixtur
     assert content["power_paper_rider_W"] == pytest.approx(answer(capsys, "static", "r1")[1]["power_mean_W"])
 
 
+@pytest.mark.usefixtures("coarse_seats")
 def test_at_another_cadence(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """What is written keeps its gear ratio and has, at the cadence asked for, the power that was said."""
     out = tmp_path / "slow.toml"
@@ -37,6 +39,7 @@ def test_at_another_cadence(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
     assert static["power_mean_W"] == pytest.approx(content["power_mean_W"], rel=1e-9)
 
 
+@pytest.mark.usefixtures("coarse_seats")
 def test_not_fitting_is_a_result_and_writes_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "mine.toml"
     arguments = ("fit", "d1", "--stature", "1.25", "--sex", "female", "--forward", "0", "0.1", "-o", str(out))

@@ -6,13 +6,12 @@ import pytest
 
 from fes_mj.linkage.plates import Hole, Plate
 
-pytest.importorskip("OCP")
-
 
 @pytest.mark.long
 @pytest.mark.parametrize("third", [None, 0.05 + 0.1j, 0.05 - 0.1j])
 def test_volume_and_centre_of_mass(third: complex | None, tmp_path: Path) -> None:
     """By the kernel's own integration."""
+    pytest.importorskip("OCP")
     from OCP.BRepGProp import BRepGProp
     from OCP.GProp import GProp_GProps
     from OCP.STEPControl import STEPControl_Reader

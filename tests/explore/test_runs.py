@@ -62,6 +62,7 @@ def test_ride(drive: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
     assert [row["ok"] for row in run["checks"]] == [check.ok for check in case.checks]
 
 
+@pytest.mark.usefixtures("coarse_seats")
 def test_fit(tmp_path: Path) -> None:
     small = D1.with_rider(thigh=0.45, shank=0.47, mass=62, sex="female")
     best = fit_seat(D1, Rider(0.45, 0.47, 62, "female"), P1P2)

@@ -12,6 +12,7 @@ from fes_mj.linkage.design import Frame
 from fes_mj.linkage.design_file import design_toml
 from fes_mj.linkage.shapes import lowest_point
 
+pytestmark = pytest.mark.usefixtures("coarse_seats")
 MOMENTS = fes_mj.load_moments("p1p2")
 
 

@@ -66,7 +66,7 @@ def test_shares_and_powers_of_the_summary(study: PopulationFit) -> None:
 )
 def test_nobody_loses_by_a_seat_that_may_move(name: str, limits: SeatLimits, monkeypatch: pytest.MonkeyPatch) -> None:
     """Who turns, rides, stays inside as drawn does so moved: no more degrees outside, at equal ones no less power."""
-    for name_of, few in {"_NODES": 2, "_FINE": 2, "_PROBES": 1}.items():
+    for name_of, few in {"_NODES": 2, "_FINE": 2, "_PROBES": 1, "_GENERATIONS": (2, 2, 2)}.items():
         monkeypatch.setattr(f"fes_mj.fit.population.{name_of}", few)
     study = fit_population(fes_mj.load_design(name), fes_mj.load_moments("p1p2"), samples=100, limits=limits)
     for riders in study.riders.values():

@@ -31,6 +31,7 @@ def test_a_moved_seat_moves_the_hip_and_nothing_else(design: fes_mj.Design) -> N
     assert moved.linkage.seat_angle - design.linkage.seat_angle == pytest.approx(0.1)
 
 
+@pytest.mark.usefixtures("coarse_seats")
 def test_a_fit_stays_within_limits_and_range_and_never_loses_power() -> None:
     moments, limits = fes_mj.load_moments("p1p2"), SeatLimits((0.0, 0.1), (-0.02, 0.02), (0.0, 0.0))
     for name in ("r1", "d2"):
@@ -55,6 +56,7 @@ def test_a_seat_that_need_not_move_stays() -> None:
     )
 
 
+@pytest.mark.usefixtures("coarse_seats")
 def test_who_does_not_fit_is_told_by_how_much_where_and_what_helps() -> None:
     child, moments = populations()["woman"].of_stature(1.25), fes_mj.load_moments("p1p2")
     fit = fit_seat(fes_mj.load_design("d1"), child, moments, SeatLimits((0.0, 0.1), (0.0, 0.0), (0.0, 0.0)))
@@ -83,6 +85,7 @@ def test_no_seat_repairs_a_linkage_that_cannot_turn() -> None:
         fit_seat(fes_mj.load_design("r2", "printed"), Rider(), fes_mj.load_moments("p1p2"))
 
 
+@pytest.mark.usefixtures("coarse_seats")
 def test_a_seat_at_the_end_of_its_range_says_so_and_has_workshop_digits() -> None:
     design, moments = fes_mj.load_design("r1"), fes_mj.load_moments("p1p2")
     fit = fit_seat(design, Rider(0.41, 0.52), moments, SeatLimits((0.0, 0.03), (0.0, 0.0), (0.0, 0.1)))
