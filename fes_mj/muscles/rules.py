@@ -17,18 +17,16 @@ from fes_mj.linkage.design import Design
 from fes_mj.linkage.joints import PerJoint
 from fes_mj.linkage.kinematics import Motion
 from fes_mj.linkage.turning import turning
-from fes_mj.muscles.activation import trapezium
-from fes_mj.muscles.anatomy import GROUPS, anatomy
+from fes_mj.muscles.anatomy import anatomy
 from fes_mj.muscles.by_angle import moments_by_angle
+from fes_mj.muscles.by_joint import JointLed
 from fes_mj.muscles.geometry import Flexion
 from fes_mj.muscles.power import MuscleTurn, best_turn, muscle_turn
-from fes_mj.muscles.prior import ramp
 from fes_mj.muscles.pull import pull
 from fes_mj.muscles.riders import Riders
-from fes_mj.muscles.timing import ANGLES, DUTY, Windows, responded
+from fes_mj.muscles.timing import ANGLES, DUTY, Windows
 
 BEST, MEASURED, BY_ANGLE, STIMULATION_BY_ANGLE = RULES = ("best", "measured", "by-angle", "stimulation-by-angle")
-LEADING = {"quadriceps": "knee", "hamstrings": "knee", "gluteus": "hip"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,8 +86,8 @@ def stimulated(rule: str, riders: Riders, design: Design, cadence: float, duty: 
         windows = trial_windows(riders, design)
         turn = muscle_turn(riders, design, cadence, windows)
     else:
-        stimulation = stimulated_by_joint(riders, design, cadence, ANGLES)
-        turn = MuscleTurn(pull(riders, motion, cadence), responded(stimulation, riders, np.full((1, 1), cadence)))
+        active = JointLed.of(riders, design, cadence, ANGLES).activation_at(ANGLES)
+        turn = MuscleTurn(pull(riders, motion, cadence), active[:, :, None])
     return Stimulated(riders, motion, cadence, turn.moment.map(lambda moment: moment[:, 0]), turn, windows)
 
 
@@ -112,13 +110,3 @@ def trial_moments(riders: Riders) -> PerJoint[FloatArray]:
     trial = riders.measured_on
     there = muscle_turn(riders, trial.design, trial.cadence, trial_windows(riders, trial.design))
     return there.moment.map(lambda moment: moment[:, 0])
-
-
-def stimulated_by_joint(riders: Riders, design: Design, cadence: float, crank_angle: FloatArray) -> FloatArray:
-    """Stimulation of each group by the joint that leads it, delayed, shape (groups, members, 1, angles)."""
-    trial, motion = riders.measured_on, kinematics.solve(design, crank_angle - cadence * riders["delay_s"][:, 0])
-    angle, rate = motion.joint_angle, motion.joint_rate
-    source = PerJoint.of(lambda joint: trial.source_angle(joint, angle[joint], rate[joint]))
-    on, width = np.radians(np.moveaxis(riders.windows(), -1, 0))[..., None]
-    there = np.stack([source[LEADING[group]] for group in GROUPS])
-    return trapezium(there - on, width, trial.cadence * ramp())[:, :, None]

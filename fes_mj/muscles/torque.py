@@ -16,11 +16,12 @@ from fes_mj.linkage.torque_source import LegControl
 from fes_mj.moments.torque_map import scalar_source, source_parameters
 from fes_mj.muscles.activation import answer
 from fes_mj.muscles.anatomy import GROUPS
+from fes_mj.muscles.by_joint import LEADING, TURNED, JointLed
 from fes_mj.muscles.instant import LegMuscles, Stimulus, joint_moments, stimulation
 from fes_mj.muscles.prior import ramp
 from fes_mj.muscles.pull import pull
 from fes_mj.muscles.riders import Riders
-from fes_mj.muscles.rules import LEADING, Stimulated, stimulated_by_joint
+from fes_mj.muscles.rules import Stimulated
 from fes_mj.muscles.stepping import Memory, MuscleStepper, Stimulator, steady
 
 # Crank angles of a turn at which activation is known where a power curve is compared: what corners of windows hide in
@@ -60,35 +61,45 @@ class MuscleTorque:
 
     def activation(self, crank_angle: FloatArray) -> FloatArray:
         """Of each group at crank angles, rad, shape (groups, angles)."""
-        return np.stack([np.interp(crank_angle, _FINE_TURN, group, period=2 * np.pi) for group in self._answer])
+        known = self._asked[0]
+        return np.stack([np.interp(crank_angle, known, group, period=2 * np.pi) for group in self._answer])
 
     def hidden(self, timestep: float) -> float:
         """Largest part of an activation that may lie between two angles of `activation`, or two steps of this time, s.
 
-        Where stimulation bends or jumps between two samples, no more of it is missed than the bend over a cell and a
-        step for half the time that both take; activation follows it by its share of the faster time constant. The
-        direction of a joint that turns round is told to a step: by joints what changes in two steps is missed as well.
+        Where stimulation bends between two samples, no more of it is missed than the bend over a cell and a step for
+        half the time that both take; of a jump, which is between two angles and told to steps by its area, less than
+        all of it for a step. Activation follows by its share of the faster time constant.
         """
-        asked = self._asked
-        bend = np.abs(np.roll(asked, 1, axis=-1) - 2 * asked + np.roll(asked, -1, axis=-1)).max()
-        cell = _FINE_TURN[1] / self.cadence
-        if self.stimulated.windows is None:
-            bend += 2 * timestep / cell * np.abs(np.diff(asked)).max()
-        return float(bend * (1 + timestep / cell) * (cell + timestep) / 2 / self.leg.rise)
+        (angle, asked), cell = self._asked, _FINE_TURN[1] / self.cadence
+        change, jumps = np.diff(asked, append=asked[:, :1]), np.diff(angle, append=2 * np.pi) <= TURNED
+        jump = np.abs(change[:, jumps]).max(initial=0.0)
+        smooth = change[:, ~jumps]
+        bend = np.abs(np.diff(smooth, append=smooth[:, :1])).max()
+        return float((bend * (1 + timestep / cell) * (cell + timestep) / 2 + jump * timestep) / self.leg.rise)
 
     @cached_property
-    def _asked(self) -> FloatArray:
-        """Stimulation as it arrives, over the fine turn, shape (groups, angles)."""
+    def _led(self) -> JointLed:
+        """By joints, over the fine turn."""
+        return JointLed.of(self.riders, self.design, self.cadence, _FINE_TURN)
+
+    @cached_property
+    def _asked(self) -> tuple[FloatArray, FloatArray]:
+        """Crank angles, rad, and stimulation that arrives there, shape (groups, angles)."""
         cadence, windows, riders = np.full((1, 1), self.cadence), self.stimulated.windows, self.riders
         if windows is None:
-            return stimulated_by_joint(riders, self.design, self.cadence, _FINE_TURN)[:, 0, 0]
-        return windows.at(_FINE_TURN - cadence * riders["delay_s"], cadence * ramp())[:, 0, 0]
+            return self._led.crank_angle[0], self._led.stimulation[:, 0]
+        return _FINE_TURN, windows.at(_FINE_TURN - cadence * riders["delay_s"], cadence * ramp())[:, 0, 0]
 
     @cached_property
     def _answer(self) -> FloatArray:
+        """Activation at the same angles."""
         turn, known = self.stimulated.turn, self.riders
-        start = 0.0 if turn is None else turn.activation[:, 0, 0, 0]
-        return answer(self._asked, 2 * np.pi / self.cadence, known["rise_s"].item(), known.fall.item(), start)
+        start = np.zeros(len(GROUPS)) if turn is None else turn.activation[:, 0, 0, 0]
+        if self.stimulated.windows is None:
+            return self._led.activation(start[:, None])[:, 0]
+        times = 2 * np.pi / self.cadence, known["rise_s"].item(), known.fall.item()
+        return answer(self._asked[1], *times, start)
 
     @property
     def stimulus(self) -> Stimulus:
@@ -109,13 +120,25 @@ class MuscleTorque:
         stimulus, groups = self.stimulus, range(len(GROUPS))
         if self.stimulated.windows is not None:
             return lambda crank, *_: [stimulation(stimulus, group, crank - lag) for group in groups]
-        sources = PerJoint.of(scalar_source)
-        where = PerJoint.of(lambda joint: source_parameters(self.riders.measured_on, joint))
+        sources, trial = [scalar_source(joint) for joint in JOINTS], self.riders.measured_on
+        where = [source_parameters(trial, joint) for joint in JOINTS]
         leading = [JOINTS.index(LEADING[group]) for group in GROUPS]
+        last = [rate.item() for rate in kinematics.solve(self.design, -lag - _FINE_TURN[[1]]).joint_rate]
 
-        def by_joint(_: float, knee: float, hip: float, knee_rate: float, hip_rate: float) -> list[float]:
-            there = sources.knee(where.knee, knee, knee_rate), sources.hip(where.hip, hip, hip_rate)
-            return [stimulation(stimulus, group, there[leading[group]]) for group in groups]
+        def asked(group: int, joint: int, angle: float, rate: float) -> float:
+            return stimulation(stimulus, group, sources[joint](where[joint], angle, rate))
+
+        def by_joint(_: float, *state: float) -> list[float]:
+            result = []
+            for group, joint in enumerate(leading):
+                angle, rate, before = state[joint], state[2 + joint], last[joint]
+                value = asked(group, joint, angle, rate)
+                if (before < 0) != (rate < 0):
+                    # it turned round since the step before: straight lines to this value and on have the jump's area
+                    value += (before / (before - rate) - 0.5) * (asked(group, joint, angle, before) - value)
+                result.append(value)
+            last[:] = state[2:]
+            return result
 
         return by_joint
 

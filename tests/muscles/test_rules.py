@@ -19,8 +19,8 @@ def test_on_the_tricycle_of_the_measurement_all_rules_but_the_best_are_the_measu
     scale = np.abs(powers["measured"]).max()
     # by angle, moments are read between whole degrees
     assert powers["by-angle"] == pytest.approx(powers["measured"], abs=2e-3 * scale)
-    # a joint's reversal is met between two degrees, where stimulation of one direction passes to the other
-    assert powers["stimulation-by-angle"] == pytest.approx(powers["measured"], abs=2e-3 * scale)
+    # a joint turns round between two degrees, and corners of windows are met a little better there
+    assert powers["stimulation-by-angle"] == pytest.approx(powers["measured"], abs=1e-4 * scale)
     assert powers["best"].mean() > powers["measured"].mean()
 
 
