@@ -1,6 +1,6 @@
 """What a found design is worth: simulated, compared with the design it had to beat, sampled for tolerance."""
 
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -12,7 +12,8 @@ from fes_mj.linkage.design import Design
 from fes_mj.linkage.joints import PerJoint
 from fes_mj.linkage.variables import lengths, with_lengths
 from fes_mj.moments.joint_moments import JointMoments
-from fes_mj.optimization.buildable import COMMON, Buildability
+from fes_mj.optimization.assessed import Assessed
+from fes_mj.optimization.buildable import Buildability
 from fes_mj.riding.ride import Ride, steady_ripple
 from fes_mj.statics.cycles import cycles, joint_speeds
 from fes_mj.statics.turn import difference_sd, quasi_static
@@ -79,37 +80,19 @@ def _tolerance(designs: Design, table: WorkTable) -> Tolerance:
 
 
 @dataclass(frozen=True)
-class Winner:
-    """A design with everything that was found out about it.
+class Winner(Assessed):
+    """A design with everything that was found out about it under joint moments.
 
-    case: simulated and cross-checked. joint_speed: mean absolute, deg/s. reversals: of each joint in a turn. ripple: of
-    the crank speed, steady_ripple. gain: over `compared_with` under the same moments, None for moments without
-    error bars.
+    reversals: of each joint in a turn. ripple: of the crank speed, steady_ripple. gain: over `compared_with` under the
+    same moments, None for moments without error bars.
     """
 
-    case: Case
     compared_with: Design
-    joint_speed: PerJoint[float]
     reversals: PerJoint[int]
     ripple: float
     gain: Gain | None
     manufacturing: Tolerance
     rider: Tolerance
-    build: Buildability
-
-    @property
-    def design(self) -> Design:
-        return self.case.design
-
-    @property
-    def driver(self) -> str:
-        """What moves the legs, in a few words."""
-        return self.case.drive.name
-
-    @property
-    def agrees(self) -> bool:
-        """Whether dynamics and statics do."""
-        return self.case.agrees
 
     @property
     def smoothness(self) -> dict[str, float]:
@@ -135,15 +118,13 @@ class Winner:
     @property
     def rows(self) -> list[tuple[str, str]]:
         """What was found out, as text."""
-        static, run = self.case.static, self.case.simulation
+        static = self.case.static
         lowest, highest, swing, _ = self.smoothness.values()
         cells = [
             ("mean crank power by statics, W", f"{static.power_mean:.3f}"),
-            ("mean crank power simulated, W", f"{run.power_mean:.3f}"),
-            ("time step of the simulation, ms", f"{1e3 * run.timestep:.3g}"),
+            *self.simulated_rows,
             ("work per turn, J", f"{static.work_per_turn:.3f}"),
-            ("cadence, rpm", f"{static.summary()['cadence_rpm']:.1f}"),
-            *((f"mean {joint} speed, deg/s", f"{speed:.1f}") for joint, speed in self.joint_speed.items()),
+            *self.speed_rows,
             ("simulated power of one leg, lowest to highest, W", f"{lowest:+.0f} to {highest:+.0f}"),
             ("the same, peak to peak, W", f"{swing:.0f}"),
             ("ripple of the crank speed, two legs, fixed gear, %", f"{100 * self.ripple:.1f}"),
@@ -157,40 +138,17 @@ class Winner:
             cells.append((f"{name}: 5th percentile of power, W", f"{tolerance.power_low:.2f}"))
         return cells
 
-    def doubts(self, optimum: "Optimum") -> list[str]:
-        """Why it may not be what was sought: what it leaves of the limits of what can be built, edges of the search."""
-        return [*self.build.doubts(optimum.problem.limits.build or COMMON), *optimum.edges]
-
     def summary(self, optimum: "Optimum") -> dict[str, Any]:
-        """The result as JSON names and units it; optimum: of the search that found the design."""
-        problem, case, static = optimum.problem, self.case, self.case.static.summary()
-        content: dict[str, Any] = {
-            "kind": self.design.linkage.kind,
-            "group": case.drive.name,
-            "method": optimum.method,
-            **{key: static[key] for key in ("power_mean_W", "work_per_turn_J", "cadence_rpm")},
-            "feasible": optimum.feasible,
-            "violations": optimum.violations,
-            "evaluations": optimum.evaluations,
-            **{f"mean_{joint}_speed_deg_s": speed for joint, speed in self.joint_speed.items()},
+        """As Assessed.summary."""
+        content = super().summary(optimum) | {
             "reversals_per_turn": dict(self.reversals.items()),
             **self.smoothness,
-            "simulated_power_mean_W": case.simulation.power_mean,
-            "relative_difference": case.relative_difference,
-            "timestep_s": case.simulation.timestep,
-            "agrees": case.agrees,
             "compared_with": self.compared_with.name,
             "gain_W": self.gain.mean if self.gain else None,
             "gain_deviation_W": self.gain.deviation if self.gain else None,
             "tolerance_manufacturing": self.manufacturing._asdict(),
             "tolerance_rider": self.rider._asdict(),
-            "design_space": problem.limits.space,
-            **asdict(self.build),
-            "doubts": self.doubts(optimum),
-            "repair": optimum.repair or None,
         }
-        if problem.people.count > 1:
-            content |= {"power_people_W": optimum.power, "riders": optimum.riders}
         return content | ({"front": optimum.front.as_json()} if optimum.front else {})
 
 
