@@ -21,10 +21,10 @@ from fes_mj.linkage.design import Design
 from fes_mj.linkage.design_file import load_design
 from fes_mj.linkage.turning import batch_turning, leg_reach
 from fes_mj.muscles.anatomy import anatomy
-from fes_mj.muscles.power import MuscleTurn, best_turn
+from fes_mj.muscles.power import MuscleTurn
 from fes_mj.muscles.pull import pull_each
 from fes_mj.muscles.riders import Riders
-from fes_mj.muscles.rules import known_motion
+from fes_mj.muscles.rules import BEST, stimulated
 from fes_mj.muscles.timing import ANGLES, DUTY, activation
 from fes_mj.statics.turn import QuasiStatic
 
@@ -151,9 +151,9 @@ def rider_powers(design: Design, riders: Riders, cadence: float | None = None, d
     lengths are known. cadence: rad/s, by default the design's. Raises InputError or AssemblyError if it does so as it
     is.
     """
-    known_motion(riders, design)
     cadence = design.linkage.cadence if cadence is None else float(cadence)
-    _, windows = best_turn(riders, design, cadence, duty)
+    windows = stimulated(BEST, riders, design, cadence, duty).windows
+    assert windows is not None  # the best rule has them
     motion = kinematics.solve(drawn_designs(design, len(riders)), ANGLES)
     with np.errstate(invalid="ignore"):
         pulled = pull_each(riders, motion, cadence)

@@ -1,7 +1,6 @@
 """Stimulated muscles as what drives the legs, where otherwise joint moments do."""
 
 from dataclasses import dataclass
-from functools import lru_cache
 from pathlib import Path
 
 from fes_mj.common.brief import Brief
@@ -55,7 +54,7 @@ class Muscles(Brief):
 
     def stimulated(self, design: Design, cadence: float) -> Stimulated:
         """Every rider on a design at a cadence in rad/s. Raises as rules.stimulated."""
-        return _stimulated(self, design, cadence)
+        return stimulated(self.timing, self.riders, design, cadence, self.duty)
 
     def simulated(self, design: Design, cadence: float) -> Stimulated:
         """The most probable rider, stimulated as is best for all. Raises as rules.stimulated."""
@@ -71,11 +70,6 @@ class Muscles(Brief):
         return torque_map(
             JointMoments(self.name, ANGLES - trial.top_dead_centre, moment.knee, moment.hip, measured_on=trial)
         )
-
-
-@lru_cache(maxsize=16)
-def _stimulated(muscles: Muscles, design: Design, cadence: float) -> Stimulated:
-    return stimulated(muscles.timing, muscles.riders, design, cadence, muscles.duty)
 
 
 def load_muscles(source: str | Path = "p1p2", timing: str = BEST, duty: float = DUTY) -> Muscles:

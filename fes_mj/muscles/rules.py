@@ -7,7 +7,7 @@ the moment itself belongs to a joint's angle and direction.
 """
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -71,11 +71,17 @@ class Stimulated:
 
 
 def stimulated(rule: str, riders: Riders, design: Design, cadence: float, duty: float = DUTY) -> Stimulated:
-    """Riders on a design under one of RULES.
+    """Riders on a design under one of RULES; the last few are kept.
 
     cadence: rad/s. duty: as for best_windows, of the best rule alone.
     Raises InputError for joints beyond the range of the muscles' lengths, AssemblyError if the linkage does not turn.
     """
+    turning(design)
+    return _stimulated(rule, riders, design, cadence, duty)
+
+
+@lru_cache(maxsize=4)
+def _stimulated(rule: str, riders: Riders, design: Design, cadence: float, duty: float) -> Stimulated:
     motion = known_motion(riders, design)
     if rule == BY_ANGLE:
         return Stimulated(riders, motion, cadence, moments_by_angle(trial_moments(riders), motion, riders.measured_on))
