@@ -43,7 +43,7 @@ def plain(path: Path) -> None:
 
 
 def _plain_frames(model: mujoco.MjModel) -> Iterator[Picture]:
-    run, data, panel = CASE.simulation, mujoco.MjData(model), power_panel(CASE, render.PLOT_WIDTH, SIDE)
+    run, data, panel = CASE.simulation, mujoco.MjData(model), power_panel(CASE, None, render.PLOT_WIDTH, SIDE)
     camera = Camera(run.design, LEGS[1][0]).forwards(0)
     with mujoco.Renderer(model, SIDE, SIDE) as renderer:
         for step in render.steps_shown(run, render.slow_motion(run.cadence)):

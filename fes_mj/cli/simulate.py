@@ -83,7 +83,7 @@ def simulate(
     if render:
         from fes_mj.viewing.render import render_video
 
-        render_video(case, render, speed, options.quiet)
+        render_video(case, render, speed, options.quiet, answer)
         options.name_files(video=render)
     if view:
         from fes_mj.viewing import viewer

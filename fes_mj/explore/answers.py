@@ -11,7 +11,7 @@ from fes_mj.common.reading import Section, is_number, is_text
 from fes_mj.common.style import COLOURS, MOMENTS
 from fes_mj.explore.dimensions import content_of, design_of, dimensions, of_kind
 from fes_mj.explore.making import making
-from fes_mj.explore.muscles import by_muscles, require_muscles
+from fes_mj.explore.numbers import by_muscles, numbers, require_muscles
 from fes_mj.explore.pose import plane
 from fes_mj.explore.runs import BY_MUSCLES, RUNS
 from fes_mj.explore.turn import turn
@@ -51,7 +51,7 @@ class Answers:
             self.start,
             self.turn,
             self.making,
-            self.muscles,
+            self.numbers,
             self.change,
             self.save,
             self.model,
@@ -86,11 +86,13 @@ class Answers:
         known = self._moments(question)
         return making(_design(question), known[question.choice("moments", known)])
 
-    def muscles(self, question: Section) -> Answer:
-        """A design and the one it is "compared" with under the muscles of those whose "moments" are asked for."""
+    def numbers(self, question: Section) -> Answer:
+        """Both numbers of a design beside those of the one it is "compared" with; under muscles also what these do."""
         known = self._moments(question)
-        compared = design_of(question.content.get("compared"))
-        return by_muscles(_design(question), compared, question.choice("moments", known), _legs(question))
+        design, moments = _design(question), known[question.choice("moments", known)]
+        both = numbers(design, design_of(question.content.get("compared")), moments)
+        by_moments = question.choice("drive", DRIVES, DRIVES[0]) == "moments"
+        return both if by_moments else both | by_muscles(design, moments, _legs(question))
 
     def change(self, question: Section) -> Answer:
         """A design of another "kind" or "branch", or with the rider of a "percentile" of a "sex"; as it is without."""

@@ -18,7 +18,7 @@ from fes_mj.linkage.joints import JOINTS
 from fes_mj.linkage.kinematics import Motion
 from fes_mj.linkage.legs import all_legs
 from fes_mj.moments.joint_moments import JointMoments
-from fes_mj.moments.uncertainty import instant_power_weights, with_sd
+from fes_mj.moments.uncertainty import instant_power_weights
 from fes_mj.statics.characteristics import motion_characteristics, power_characteristics
 from fes_mj.statics.equilibrium import crank_moment, virtual_work
 from fes_mj.statics.extrapolation import beyond
@@ -104,7 +104,7 @@ def _numbers(solved: QuasiStatic) -> Iterator[Number]:
 def _power_numbers(solved: QuasiStatic, forces: Mapping[str, float]) -> Iterator[Number]:
     character = power_characteristics(solved.power)
     joint = max(forces, key=lambda name: forces[name])
-    yield "power", "mean power, one leg", with_sd(solved.power_mean, solved.power_sd), "W"
+    yield "power", "as the paper assumes, one leg", f"{solved.power_mean:.2f}", "W"
     yield "work", "work per turn", f"{solved.work_per_turn:.2f}", "J"
     yield "inactive", "inactive zone", f"{100 * float(character['inactive_zone_share']):.0f}", "% of the turn"
     yield "ripple", "power, peak to peak", f"{float(character['power_peak_to_peak_W']):.0f}", "W"

@@ -10,13 +10,16 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from PIL import Image, ImageDraw
 
+from fes_mj.budget.answer import Answer
 from fes_mj.common.arrays import Picture
 from fes_mj.common.style import BAD, COLOURS, FAINT, GOOD, INK, STYLE, literal
 from fes_mj.common.units import KMH, RPM
 from fes_mj.crosscheck.ride_case import RideCase
 from fes_mj.crosscheck.turn_case import Case
 from fes_mj.linkage.design import Design
+from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.muscles.drive import Muscles
+from fes_mj.riding.stimulated import StimulatedRider
 from fes_mj.riding.verdict import verdict as what_became
 from fes_mj.viewing.charts import any_letters, plot_power
 
@@ -55,7 +58,7 @@ class Panel:
 
 def write_title(figure: Figure, design: Design, below: str) -> None:
     """At the top: the design's name and kind, and what is said of the run."""
-    _fit(figure, 0.955, f"{design.name.upper()}: {design.linkage.title}", size=13, weight="bold")
+    _fit(figure, 0.955, f"{design.name}: {design.linkage.title}", size=13, weight="bold")
     _fit(figure, 0.925, below, size=11, color=FAINT)
 
 
@@ -71,34 +74,47 @@ def _fit(figure: Figure, y: float, text: str, size: float, **look: Any) -> None:
     line.set_fontsize(size * min(1.0, (_RIGHT - _LEFT) / width))
 
 
-def power_panel(case: Case, width: int, height: int) -> Callable[[int], Picture]:
+def power_panel(case: Case, answer: Answer | None, width: int, height: int) -> Callable[[int], Picture]:
     """Crank power over the turn, dynamic and static: step of the turn -> the panel with the cursor there."""
-    run, panel = case.simulation, Panel(width, height, lambda figure: [_draw_power(figure, case)])
+    run, panel = case.simulation, Panel(width, height, lambda figure: [_draw_power(figure, case, answer)])
     angle = np.degrees(run.crank_angle) % 360
     return lambda step: panel.with_cursor(angle[step], run.power[step], COLOURS["mujoco"])
 
 
-def _draw_power(figure: Figure, case: Case) -> Axes:
+def _draw_power(figure: Figure, case: Case, answer: Answer | None) -> Axes:
     run = case.simulation
-    axes = figure.add_axes((0.14, 0.27, 0.81, 0.48))
+    axes = figure.add_axes((0.14, 0.31, 0.81, 0.44))
     plot_power(axes, case)
     mean = len(run.legs) * run.power_mean
-    axes.axhline(mean, color=COLOURS["mujoco"], lw=1, ls=":", label=f"mean of MuJoCo, {mean:.1f} W")
+    axes.axhline(mean, color=COLOURS["mujoco"], lw=1, ls=":", label=f"MuJoCo, mean of the turn: {mean:.1f} W")
     axes.legend(loc="lower left", bbox_to_anchor=(-0.02, 1.0), fontsize=11)
     legs = "one leg" if len(run.legs) == 1 else "two legs"
-    drive = run.drive.driver if isinstance(run.drive, Muscles) else f"joint moments {run.drive.name.upper()}"
-    write_title(figure, run.design, f"{drive}, {run.cadence / RPM:.1f} rpm, {legs}")
-    facts = (
-        ("mean power, MuJoCo", f"{run.power_mean:.3f} W a leg", COLOURS["mujoco"]),
-        ("mean power, quasi-static", f"{case.statics.power_mean:.3f} W a leg", COLOURS["quasi-static"]),
-        ("MuJoCo less exact power, rms", f"{case.rms_per_leg(run):.3f} W a leg", INK),
-        ("largest loop gap", f"{1e6 * run.loop_gap_max:.1f} µm", INK),
-    )
+    moved = isinstance(run.drive, Muscles)
+    write_title(figure, run.design, f"driven by {_driver(run.drive)}; {run.cadence / RPM:.1f} rpm, {legs}")
+    whose = "the most probable rider" if moved else "as the paper assumes"
+    facts = [
+        (f"{whose}, statics", f"{case.static_power_mean:.2f} W", COLOURS["quasi-static"]),
+        ("the same in MuJoCo", f"{run.power_mean:.2f} W", COLOURS["mujoco"]),
+    ]
+    if answer and answer.rider_power:
+        facts.append(("for a rider: muscles, best timing", f"{answer.rider_power.text(1)} W", INK))
+    if answer and answer.rider_ratio:
+        facts.append(("for a rider, per equally timed TRT", answer.rider_ratio.text(2), INK))
+    figure.text(_LEFT, 0.2, "Mean of the turn, one leg (5 to 95 %)", size=11, color=FAINT)
     for row, (name, value, colour) in enumerate(facts):
-        figure.text(0.14, 0.165 - 0.034 * row, name, size=12, color=colour)
-        figure.text(0.95, 0.165 - 0.034 * row, value, size=12, color=colour, ha="right", family="DejaVu Sans")
+        figure.text(_LEFT, 0.165 - 0.034 * row, name, size=12, color=colour)
+        figure.text(_RIGHT, 0.165 - 0.034 * row, value, size=12, color=colour, ha="right", family="DejaVu Sans")
     write_verdict(figure, verdict(case), case.agrees)
     return axes
+
+
+def _driver(drive: JointMoments | Muscles | StimulatedRider) -> str:
+    """What drives the legs, in words."""
+    return (
+        f"joint moments {drive.name}"
+        if isinstance(drive, JointMoments)
+        else f"{drive.riders.name} muscles, timing {drive.timing}"
+    )
 
 
 def verdict(case: Case) -> str:
@@ -132,9 +148,11 @@ def _draw_ride(figure: Figure, case: RideCase, end: float) -> list[Axes]:
     power.axhline(0, color="black", lw=0.8)
     speed.legend(loc="lower left", bbox_to_anchor=(-0.02, 1.0), fontsize=11, ncols=2)
     ride, trace = case.ride, case.simulation.trace
-    road = f"joint moments {ride.drive.name.upper()}, {ride.transmission}, {100 * ride.road.slope:.3g} % slope"
-    write_title(figure, ride.design, road)
-    at_end = "" if trace.mean_speed is None else f", {trace.mean_speed / KMH:.1f} km/h at the end"
+    whole = float(trace.time[-1])
+    part = f"the whole ride, {whole:.1f} s" if end > whole - 0.1 else f"the first {end:.0f} of {whole:.0f} s"
+    road = f"{ride.transmission}, {100 * ride.road.slope:.3g} % slope; {part}"
+    write_title(figure, ride.design, f"driven by {_driver(ride.drive)}; {road}")
+    at_end = "" if trace.mean_speed is None else f": {trace.mean_speed / KMH:.1f} km/h over its last turns"
     result = f"{what_became(trace).word.replace('-', ' ')}{at_end}; the two solvers agree"
     write_verdict(figure, result if case.agrees else "the two solvers DO NOT agree", case.agrees)
     return [speed, power]

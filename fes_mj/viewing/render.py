@@ -12,13 +12,13 @@ from typing import Any
 import mujoco
 import numpy as np
 
+from fes_mj.budget.answer import Answer
 from fes_mj.common.arrays import IntArray, Picture
 from fes_mj.common.console import progress_bar
 from fes_mj.common.errors import InputError, MissingPartError, require_extra
 from fes_mj.common.writing import replacing, temporary_beside
 from fes_mj.crosscheck.ride_case import RideCase
 from fes_mj.crosscheck.turn_case import Case
-from fes_mj.linkage.shapes import lowest_point
 from fes_mj.simulation.appearance import Spec
 from fes_mj.simulation.bench import Simulation
 from fes_mj.simulation.mjcf import build_mjcf
@@ -26,6 +26,7 @@ from fes_mj.simulation.road import RoadRun
 from fes_mj.simulation.road_mjcf import build_road_mjcf
 from fes_mj.viewing.headless import use_offscreen_gl
 from fes_mj.viewing.stage import SIDE, stage
+from fes_mj.viewing.wheels import add_wheels, ground
 
 PLOT_WIDTH = 560  # pixels
 FRAMES_PER_SECOND = 30
@@ -50,10 +51,17 @@ def steps_shown(run: Simulation, speed: float) -> IntArray:
     return (np.arange(frames) * turns * steps // frames) % steps
 
 
-def render_video(case: Case | RideCase, path: Path, speed: float | None = None, quiet: bool = False) -> None:
+def render_video(
+    case: Case | RideCase,
+    path: Path,
+    speed: float | None = None,
+    quiet: bool = False,
+    answer: Answer | None = None,
+) -> None:
     """Write an H.264 video: of a turn whole turns, REPEATS times; of a ride its begin, in true time.
 
-    speed: of a turn's video, 1 is the true one; by default that of slow_motion. Raises MissingPartError as
+    speed: of a turn's video, 1 is the true one; by default that of slow_motion. answer: the design's two numbers, which
+    are written beside a turn. Raises MissingPartError as
     require_video, InputError if the file cannot be written.
     """
     require_video()
@@ -65,14 +73,14 @@ def render_video(case: Case | RideCase, path: Path, speed: float | None = None, 
     else:
         speed = speed or slow_motion(case.cadence)
         shown = steps_shown(case.simulation, speed)
-        write_video(path, pictures(case, shown, speed), len(shown), quiet, REPEATS)
+        write_video(path, pictures(case, shown, speed, answer), len(shown), quiet, REPEATS)
 
 
-def pictures(case: Case, steps: IntArray, speed: float) -> Iterator[Picture]:
-    """The frames at these steps of the first turn, shape (SIDE, SIDE + PLOT_WIDTH, 3)."""
+def pictures(case: Case, steps: IntArray, speed: float, answer: Answer | None = None) -> Iterator[Picture]:
+    """The frames at these steps of the first turn, as render_video has them, shape (SIDE, SIDE + PLOT_WIDTH, 3)."""
     from fes_mj.viewing.panel import power_panel
 
-    run, panel = case.simulation, power_panel(case, PLOT_WIDTH, SIDE)
+    run, panel = case.simulation, power_panel(case, answer, PLOT_WIDTH, SIDE)
     spec = build_mjcf(run.design, cadence=run.cadence, timestep=run.timestep, legs=len(run.legs))
     with stage(spec, run.design, speed, len(run.legs)) as scene:
         for step in steps:
@@ -147,10 +155,13 @@ def _ride_pictures(case: RideCase, steps: IntArray, end: float) -> Iterator[Pict
     run, panel = case.simulation, ride_panel(case, end, PLOT_WIDTH, SIDE)
     spec = build_road_mjcf(run.ride, run.timestep)
     _add_road(spec, run)
+    radii = add_wheels(spec, run.ride.design)
     with stage(spec, run.ride.design, speed=1.0, legs=2, road=_DISTANCE) as scene:
         for step in steps:
             pose = {name: run.sensors[f"{name}_angle"][step] for name in run.sensors.joints}
-            yield np.hstack([scene.picture(pose, run.trace.distance[step]), panel(int(step))])
+            distance = float(run.trace.distance[step])
+            rolled = {name: distance / radius for name, radius in radii.items()}
+            yield np.hstack([scene.picture(pose | rolled, distance), panel(int(step))])
 
 
 def _add_road(spec: Spec, run: RoadRun) -> None:
@@ -164,7 +175,7 @@ def _add_road(spec: Spec, run: RoadRun) -> None:
         name="road",
         type=mujoco.mjtGeom.mjGEOM_PLANE,
         material="road",
-        pos=(-length / 2, 0, lowest_point(run.ride.design) - 0.1),
+        pos=(-length / 2, 0, ground(run.ride.design)),
         size=(length / 2 + 10, 3, 0.1),
         contype=0,
         conaffinity=0,

@@ -28,7 +28,7 @@ const state = {
   touched: null, // the dimension that was changed last
   moments: start.chosen,
   drive: start.drive,
-  muscles: null, // what they do, when that has been computed
+  numbers: null, // with their intervals, and what muscles do, when that has been computed
   hidden: new Set(),
   angle: 0,
   playing: !matchMedia("(prefers-reduced-motion: reduce)").matches,
@@ -41,9 +41,9 @@ const jointsPlot = new Plot($("joints-plot"), (angle) => hold(angle));
 const sliders = new Sliders(document.querySelectorAll("[data-owner]"), start.dimensions, changed);
 const making = new Making($("making"), (angle) => hold(angle));
 const clearances = new Rested("making", (answer) => making.show(answer));
-const muscles = new Rested("muscles", (answer) => {
-  if (answer === state.muscles) return; // none yet
-  state.muscles = answer;
+const numbers = new Rested("numbers", (answer) => {
+  if (answer === state.numbers) return; // none yet
+  state.numbers = answer;
   showNumbers();
   redraw();
 });
@@ -167,7 +167,7 @@ function askRested() {
   const turns = Boolean(state.turn?.moments), { design, moments } = state;
   $("making").hidden = !turns;
   clearances.ask(turns ? { design, moments } : null);
-  muscles.ask(turns && state.drive === "muscles" ? { ...asked(), compared: compared() } : null);
+  numbers.ask(turns ? { ...asked(), compared: compared() } : null);
 }
 
 function compared() {
@@ -212,7 +212,8 @@ function showNumbers() {
   const broken = $("limits").checked && !turn.failing ? turn.broken : [];
   const marks = new Set(turn.failing ? [state.touched] : broken.flatMap((limit) => limit.marks));
   $("title").textContent = state.design.name;
-  $("numbers").replaceChildren(...[...(state.muscles?.numbers ?? []), ...(own?.numbers ?? []), ...(turn.numbers ?? [])].map(({ name, words, text, unit }) => {
+  const { windows = [], numbers = [], why } = state.numbers ?? {};
+  $("numbers").replaceChildren(...[...windows, ...numbers, ...(own?.numbers ?? []), ...(turn.numbers ?? [])].map(({ name, words, text, unit }) => {
     const row = document.createElement("tr");
     row.dataset.name = name;
     row.classList.toggle("outside", marks.has(name));
@@ -221,22 +222,20 @@ function showNumbers() {
   }));
   $("broken").replaceChildren(...broken.map(({ text }) => Object.assign(document.createElement("li"), { textContent: text })));
   sliders.mark(marks);
-  const why = state.muscles?.why;
-  $("note").textContent = [own?.note && `Note: ${own.note}.`, why && `Muscles: ${why}.`].filter(Boolean).join(" ");
+  $("note").textContent = [own?.note && `Note: ${own.note}.`, why && `For a rider: ${why}.`].filter(Boolean).join(" ");
   headline(own, other);
 }
 
-// The power of one leg under what drives, beside that of the design it is compared with; given: both by moments.
+// Both powers of one leg, first that of what drives; and the design it is compared with, as the paper assumes.
 function headline(own, compared) {
-  const muscles = state.drive === "muscles", result = muscles ? own && state.muscles : own;
-  if (own && !result) $("power").textContent = "…";
-  else $("power").textContent = result?.numbers ? `${result.numbers[0].text} W` : "no power";
-  const power = result?.power_mean_W, other = muscles ? state.muscles?.compared_W : compared?.power_mean_W;
-  const change = (100 * (power - other)) / Math.abs(other);
+  const rider = state.numbers ? state.numbers.rider : "…", muscles = state.drive === "muscles";
+  const assumed = own && `${own.numbers[0].text} W`, ridden = own && (rider ? `${rider} W` : "not known");
+  $("power").textContent = (muscles ? ridden : assumed) ?? "no power";
+  const power = own?.power_mean_W, other = compared?.power_mean_W, change = (100 * (power - other)) / Math.abs(other);
   const percent = Number.isFinite(change) && Math.abs(change) >= 0.05 ? `, ${change < 0 ? "−" : "+"}${Math.abs(change).toFixed(1)} %` : "";
   $("against").textContent = [
-    muscles && "by muscles",
-    Number.isFinite(other) && `${state.reference.name}: ${other.toFixed(2)} W${percent}`,
+    own && (muscles ? `for a rider; as the paper assumes ${assumed}` : `as the paper assumes; for a rider ${ridden}`),
+    !muscles && Number.isFinite(other) && `${state.reference.name}: ${other.toFixed(2)} W${percent}`,
   ].filter(Boolean).join("; ");
 }
 
@@ -257,8 +256,8 @@ function showPlots() {
       bands.push({ low: of.masses.map((y, n) => y - of.sd[n]), high: of.masses.map((y, n) => y + of.sd[n]), colour });
     }
   });
-  if (state.muscles?.static) {
-    const name = `${state.moments} muscles`, { static: y, sd } = state.muscles, colour = start.series[start.moments.indexOf(state.moments) % start.series.length];
+  if (state.numbers?.static) {
+    const name = `${state.moments} muscles`, { static: y, sd } = state.numbers, colour = start.series[start.moments.indexOf(state.moments) % start.series.length];
     curves.push({ name, y, colour, width: 2.4, dash: "9 3 2 3" });
     if (!state.hidden.has(name)) bands.push({ low: y.map((power, n) => power - sd[n]), high: y.map((power, n) => power + sd[n]), colour });
   }

@@ -1,0 +1,87 @@
+"""The two numbers of a design, beside another's, with their intervals; under muscles also the curve and the windows.
+
+They take longer than a curve may, and are asked for when the design has rested.
+"""
+
+from collections.abc import Iterator
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from fes_mj.budget.answer import Answer, Estimate, answer
+from fes_mj.common.errors import InputError
+from fes_mj.explore.turn import DIGITS, Number, shown
+from fes_mj.linkage.design import Design
+from fes_mj.linkage.legs import all_legs
+from fes_mj.moments.joint_moments import GROUPS, JointMoments
+from fes_mj.muscles.riders import load_riders
+from fes_mj.muscles.rules import BEST
+from fes_mj.statics.muscle_static import MuscleStatic
+from fes_mj.statics.turn import quasi_static
+
+
+def numbers(design: Design, compared: Design, moments: JointMoments) -> dict[str, Any]:
+    """Both numbers under moments and their riders' muscles, and each per another design's.
+
+    "rider_power_mean_W" is a rider's. What is not known is left out, and "why" says so.
+    """
+    own, other = _answered(design, moments), _answered(compared, moments)
+    power = own.rider_power
+    return {
+        "rider_power_mean_W": power and power.value,
+        "rider": power and power.text(1),
+        "numbers": shown(_rows(own, *own.per(other))),
+        "why": own.missing or None,
+    }
+
+
+def by_muscles(design: Design, moments: JointMoments, legs: int = 1) -> dict[str, Any]:
+    """Expected power over the turn by the muscles of moments' riders, its standard deviation, and the windows.
+
+    Curves are of all legs, in W. Without power, "why" says so.
+    """
+    try:
+        require_muscles(moments.name)
+        turn = MuscleStatic.solve(design, load_riders(moments.name), design.linkage.cadence, BEST)
+    except InputError as error:
+        return {"why": str(error)}
+    return {
+        "static": np.round(all_legs(turn.power, legs), DIGITS),
+        "sd": np.round(all_legs(turn.stimulated.power, legs).std(axis=0), DIGITS),
+        "windows": shown(_windows(turn)),
+    }
+
+
+def require_muscles(group: str) -> None:
+    """Raise InputError for moments of whose riders no muscles are known."""
+    if group not in GROUPS:
+        raise InputError(f"no muscles of {group} are known, only of {' and '.join(GROUPS)}")
+
+
+@lru_cache(maxsize=16)
+def _answered(design: Design, moments: JointMoments) -> Answer:
+    try:
+        legs = [quasi_static(design, moments)]
+    except InputError as error:
+        return Answer(design, missing=str(error))
+    return answer(design, legs, load_riders(moments.name) if moments.name in GROUPS else None)
+
+
+def _rows(own: Answer, paper: Estimate | None, rider: Estimate | None) -> Iterator[Number]:
+    rows = (
+        ("assumed", "as the paper assumes, 5 to 95 %", own.paper_power, 2, "W"),
+        ("assumed_compared", "as the paper assumes, per compared", paper, 2, ""),
+        ("rider", "for a rider, best timing", own.rider_power, 1, "W"),
+        ("rider_per_trt", "for a rider, per timed TRT", own.rider_ratio, 2, ""),
+        ("rider_compared", "for a rider, per compared", rider, 2, ""),
+    )
+    for name, words, estimate, digits, unit in rows:
+        if estimate:
+            yield name, words, estimate.text(digits), unit
+
+
+def _windows(turn: MuscleStatic) -> Iterator[Number]:
+    for muscles, window in (turn.windows_deg or {}).items():
+        text = f"{window[0]:.0f} to {window[1]:.0f}" if window else "never"
+        yield muscles, f"{muscles} stimulated", text, "deg" if window else ""
