@@ -120,6 +120,8 @@ export function legend(box, curves, unit, hidden, onToggle, fixed = []) {
     }
     return { button, value, y: curve.y, unit };
   });
+  const held = [...box.children].indexOf(document.activeElement); // the keyboard stays where it was
   box.replaceChildren(...made.map((each) => each.button));
+  made[held]?.button.focus();
   return made.filter((each) => each.y);
 }
