@@ -20,7 +20,7 @@ from fes_mj.riding.verdict import NO_AGREEMENT, outside_known, sentence, verdict
 from fes_mj.simulation.appearance import Spec
 from fes_mj.simulation.road import RoadRun, ride_on_road
 from fes_mj.simulation.road_control import RoadControl, road_control
-from fes_mj.simulation.road_step import ride_timestep, tried_timestep
+from fes_mj.simulation.road_step import finer_timestep, ride_timestep, tried_timestep
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -59,21 +59,35 @@ class RideCase(Brief):
         return ride_by_equation(self.ride)
 
     @cached_property
-    def trial(self) -> RoadRun:
-        """By MuJoCo with a step twice as long, which says whether the closed form has chosen it well.
+    def runs(self) -> tuple[RoadRun, RoadRun]:
+        """By MuJoCo for as long as the reference rides: a trial run, then one as it shall be.
 
-        Where that step is too long for MuJoCo, with half of it; beside a step that is given, with half of that.
+        The trial's step is twice as long, which says whether the closed form has chosen it well; where that is too long
+        for MuJoCo, half of it; beside a step that is given, half of that. A run that fails a check for its step becomes
+        the trial of a finer one. Raises UnstableError if it breaks down, InputError for too many steps.
         """
         step = self.timestep or ride_timestep(self.reference)
         try:
-            return self.simulated(2 * step)
+            trial = self.simulated(2 * step)
         except UnstableError:
-            return self.simulated(step / 2 if self.timestep else step)
+            trial = self.simulated(step / 2 if self.timestep else step)
+        if self.timestep:
+            return trial, self.simulated(step)
+        run, failed = self.simulated(tried_timestep(self.reference, trial)), None
+        while finer := finer_timestep(self.reference, run, failed):
+            trial = failed = run
+            run = self.simulated(finer)
+        return trial, run
 
-    @cached_property
+    @property
+    def trial(self) -> RoadRun:
+        """The first, which says how exact the second is."""
+        return self.runs[0]
+
+    @property
     def simulation(self) -> RoadRun:
-        """By MuJoCo, for as long as the reference rides. Raises UnstableError if it breaks down."""
-        return self.simulated(self.timestep or tried_timestep(self.reference, self.trial))
+        """The second."""
+        return self.runs[1]
 
     def simulated(self, timestep: float) -> RoadRun:
         """By MuJoCo with a time step in s."""

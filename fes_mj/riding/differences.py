@@ -27,10 +27,13 @@ def speed_difference(one: Trace, other: Trace) -> float:
 
 
 def _speed_squared(trace: Trace, distance: FloatArray) -> FloatArray:
-    """Of the tricycle when it first comes to these distances, m^2/s^2."""
-    farthest = np.maximum.accumulate(trace.distance)
-    first = np.concatenate([[True], np.diff(farthest) > 0])
-    return np.asarray(np.interp(distance, farthest[first], trace.speed[first] ** 2))
+    """Of the tricycle when it first comes to these distances, m^2/s^2, between the two samples there."""
+    after = np.searchsorted(np.maximum.accumulate(trace.distance), distance)
+    before = np.maximum(after - 1, 0)  # not the farthest so far: it may have rolled back since
+    near, far = trace.distance[before], trace.distance[after]
+    part = (distance - near) / np.where(far > near, far - near, 1.0)
+    slow, fast = trace.speed[before] ** 2, trace.speed[after] ** 2
+    return np.asarray(slow + part * (fast - slow))
 
 
 def work_scale(trace: Trace) -> float:

@@ -178,12 +178,12 @@ def ride(ride: Ride, fineness: int = 1) -> Trace:
     >>> fes_mj.ride(fes_mj.Ride(fes_mj.load_design("d1"), fes_mj.load_moments("p1p2")))
     <Trace d1 p1p2 freewheel 0 %: rides at 30.37 km/h after 60 s>
     """
-    from fes_mj.riding import solver  # with numba, which takes a second to import
+    from fes_mj.riding import equation, solver  # with numba, which takes a second to import
 
     ride.require_possible()
-    system = readable(solver.system(ride, fineness))
+    system = readable(equation.system(ride, fineness))
     start = float(ride.start), ride.launch / ride.travel, 0.0, float(ride.launch), 0.0, 0.0, (0.0,) * 6
-    state, mode, clock, until = solver.State(*start), solver.Mode(True, 0), 0.0, float(ride.duration)
+    state, mode, clock, until = equation.State(*start), equation.Mode(True, 0), 0.0, float(ride.duration)
     samples = np.empty((0, len(solver.SAMPLE)))
     while clock < until:
         rows = np.empty((ROWS, len(solver.SAMPLE)))

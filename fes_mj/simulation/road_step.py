@@ -15,9 +15,11 @@ from fes_mj.simulation.road_mjcf import TIMESTEP
 from fes_mj.simulation.time_step import FINE_TURN, SHARE, TRIAL, local_errors
 
 MOST_STEPS = 2_000_000  # with their records two thirds of a gigabyte and half a minute
-# A trial run may ask for so much finer a step than the closed form does, which knows no joint moments and no loose
-# crank. To be still farther off is no matter of the step.
+# A run may ask for so much finer a step at once. The closed form knows no joint moments and no loose crank.
 FINER = 4.0
+# Of an error in the step: of second order, less what is not yet so small. A mistake, as moments of a step before, is of
+# first order, and one that has nothing to do with the step of none: no finer step shall hide it.
+LEAST_ORDER = 1.25
 
 
 def ride_timestep(trace: Trace) -> float:
@@ -32,10 +34,27 @@ def ride_timestep(trace: Trace) -> float:
 
 
 def tried_timestep(trace: Trace, trial: RoadRun) -> float:
-    """The same, at most, once a trial run with twice that step shows its loss, and how far it is from the reference."""
-    lost, apart = abs(trial.lost) / work_scale(trial.trace), speed_difference(trial.trace, trace)
-    finer = math.sqrt(max(_share("ride_energy", lost), _share("ride_speed", apart)) / 4)
+    """The same, at most, once a trial run with twice that step shows its error (step_error)."""
+    finer = math.sqrt(step_error(trace, trial) / 4)
     return _within_reason(trace, trial.timestep / 2 / min(max(1.0, finer), FINER))
+
+
+def finer_timestep(trace: Trace, run: RoadRun, coarser: RoadRun | None) -> float | None:
+    """The step that a run needs which fails a check for its loss or its speed; None if it fails none, or if `coarser`,
+    a run that failed before, says that this is no matter of the step. Raises InputError as ride_timestep.
+    """
+    error = step_error(trace, run)
+    if error * SHARE <= 1:
+        return None
+    if coarser and error * (coarser.timestep / run.timestep) ** LEAST_ORDER > step_error(trace, coarser):
+        return None
+    return _within_reason(trace, run.timestep / min(math.sqrt(error), FINER))
+
+
+def step_error(trace: Trace, run: RoadRun) -> float:
+    """Work that a run loses, or how far it is from the reference, whichever is more: in units of what is allowed."""
+    lost, apart = abs(run.lost) / work_scale(run.trace), speed_difference(run.trace, trace)
+    return max(_share("ride_energy", lost), _share("ride_speed", apart))
 
 
 def _share(check: str, error: float) -> float:

@@ -1,15 +1,18 @@
 """Two solvers on one ride: they agree, and a mistake in one of them is seen."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
 import fes_mj
+from fes_mj.common.checks import definitions
 from fes_mj.crosscheck.ride_case import RideCase
 from fes_mj.muscles.drive import Muscles
 from fes_mj.muscles.riders import load_riders
+from fes_mj.riding.differences import work_scale
 from fes_mj.riding.ride import Ride, Road, balancing_slope
 from fes_mj.riding.stimulated import stimulated_rider
 from fes_mj.riding.trace import ride as ride_by_equation
@@ -86,3 +89,20 @@ def test_a_trial_step_that_breaks_down_is_halved(given: float | None, tried: flo
     assert (case.trial.timestep, case.simulation.timestep) == pytest.approx((tried, ridden))
     assert case.agrees
     assert 0 < case.uncertainty["mujoco"] < 1e-4
+
+
+@pytest.mark.parametrize(("order", "ridden"), [(2.0, [4e-4, 2e-4, 5e-5, 1.25e-5]), (1.0, [4e-4, 2e-4, 5e-5])])
+def test_a_run_that_fails_for_its_step_is_refined(order: float, ridden: list[float]) -> None:
+    """40 limits at 0.1 ms, but little in the trial by chance; an error of first order is a mistake that stays."""
+    steps: list[float] = []
+
+    class Lossy(RideCase):
+        def simulated(self, timestep: float) -> Any:
+            steps.append(timestep)
+            excess = 0.1 if len(steps) == 1 else 40 * (timestep / 1e-4) ** order
+            limit = definitions()["ride_energy"].limit * work_scale(self.reference)
+            return SimpleNamespace(trace=self.reference, timestep=timestep, lost=excess * limit)
+
+    case = Lossy(Ride(fes_mj.load_design("trt"), P1P2, Road(slope=0.01), duration=1.0))
+    assert [case.trial.timestep, case.simulation.timestep] == pytest.approx(ridden[-2:])
+    assert steps == pytest.approx(ridden)

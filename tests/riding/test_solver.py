@@ -13,9 +13,11 @@ from fes_mj.linkage.inertia import GRAVITY
 from fes_mj.linkage.legs import TWO_LEGS
 from fes_mj.moments.drive import POINTS
 from fes_mj.moments.torque_map import torque_map
+from fes_mj.riding.differences import speed_difference
 from fes_mj.riding.leg_table import CELL_TOLERANCE, STEP_TOLERANCE, LegTable, leg_table
 from fes_mj.riding.lookup import place
 from fes_mj.riding.ride import Ride, Road, balancing_slope, steady_ripple
+from fes_mj.riding.solver import lowest
 from fes_mj.riding.trace import ride as solved
 from fes_mj.statics.equilibrium import crank_moment
 
@@ -110,6 +112,24 @@ def test_on_and_off_the_freewheel_at_half_the_step() -> None:
 
 
 DESIGNS = Path(__file__).parent / "designs"
+
+
+def test_no_engagement_of_a_loose_crank_is_missed() -> None:
+    """It jerks ahead within a few degrees, and drives the wheel for two milliseconds."""
+    design = fes_mj.load_design(DESIGNS / "loose_crank.toml")
+    ride = Ride(design, fes_mj.load_moments("p1p2"), Road(slope=0.0071), launch=0.864, start=1.204, duration=2.0)
+    trace, finer = solved(ride), solved(ride, 2)
+    assert np.count_nonzero(np.diff(trace.coasting)) == np.count_nonzero(np.diff(finer.coasting)) == 35
+    assert speed_difference(trace, finer) < 1e-4
+
+
+@pytest.mark.parametrize(
+    ("margins", "part"),
+    [((1.0, -0.125, 1.0), 0.5), ((3.0, -0.75, 0.0), 2 / 3), ((1.0, 0.0, 1.0), 1.0), ((1.0, 2.0, 1.0), 1.0)],
+)
+def test_a_margin_that_falls_below_zero_within_a_step(margins: tuple[float, float, float], part: float) -> None:
+    """Of parabolas, as 9 t^2 - 12 t + 3; two of them are never below zero."""
+    assert lowest(*margins) == pytest.approx(part)
 
 
 @pytest.mark.parametrize(
