@@ -21,6 +21,12 @@ def machine_code(function: Function) -> Function:
     return _njit(function)
 
 
+def inlined_machine_code(function: Function) -> Function:
+    """The same as a part of each caller: a call hands on all arrays of a named tuple, as long as a formula takes."""
+    _files.add(function.__code__.co_filename)
+    return _njit(function, forceinline=True)
+
+
 def kept_machine_code(function: Function) -> Function:
     """The same, kept on disk between processes: of a function that Python calls.
 

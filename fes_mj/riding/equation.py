@@ -15,7 +15,7 @@ T = 0: no impact, no memory. Rolling resistance is dry friction: it holds a tric
 import math
 from typing import NamedTuple, TypeAlias
 
-from fes_mj.common.machine_code import machine_code
+from fes_mj.common.machine_code import inlined_machine_code, machine_code
 from fes_mj.muscles.step import stimulation
 from fes_mj.riding.leg_table import LegTable, leg_table
 from fes_mj.riding.lookup import between, place
@@ -114,7 +114,7 @@ def answering(system: System, group: int, felt: float, active: float) -> float:
     return missing / (system.stimulator.rise if missing > 0 else system.stimulator.fall)
 
 
-@machine_code
+@inlined_machine_code
 def muscles(system: System, state: State, row: int, part: float) -> tuple[float, Activation]:
     """Virtual work of both legs' muscles, N m, and the rates of their activations."""
     table, angle, speed, active = system.table, state.crank_angle, state.crank_speed, state.activation

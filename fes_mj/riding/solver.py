@@ -3,7 +3,7 @@
 import math
 from typing import Any, NamedTuple
 
-from fes_mj.common.machine_code import kept_machine_code, machine_code, sources
+from fes_mj.common.machine_code import inlined_machine_code, kept_machine_code, machine_code, sources
 from fes_mj.linkage.inertia import CrankInertia
 from fes_mj.riding.equation import Mode, State, System, margins, mode_of, moved, rates_of
 from fes_mj.riding.leg_table import LegTable
@@ -32,7 +32,7 @@ class Step(NamedTuple):
     error: float
 
 
-@machine_code
+@inlined_machine_code
 def stepped(system: System, start: State, first: State, mode: Mode, time: float) -> Step:
     """A step of Runge and Kutta from a state with these rates."""
     second, _ = rates_of(system, moved(start, first, time / 2), mode)
@@ -63,7 +63,7 @@ def fitting(excess: float) -> float:
     return 0.9 / math.sqrt(math.sqrt(min(max(excess, 1 / 256), 256.0)))
 
 
-@machine_code
+@inlined_machine_code
 def tried(
     system: System, start: State, first: State, mode: Mode, begun: tuple[float, float], longest: float, trusted: float
 ) -> tuple[Step, float, float]:
@@ -71,18 +71,20 @@ def tried(
 
     begun: margins at the start.
     """
-    time = min(longest, trusted)
-    step = stepped(system, start, first, mode, time)
-    while step.error > system.tolerance and time > SHORTEST:
-        time *= fitting(step.error / system.tolerance)
-        trusted = time
+    time, whole = min(longest, trusted), True
+    while True:
         step = stepped(system, start, first, mode, time)
+        if step.error > system.tolerance and time > SHORTEST:
+            time *= fitting(step.error / system.tolerance)
+            trusted = time
+            continue
+        part = 1.0
+        if whole and min(step.left) >= 0:  # yet a mode may have been over, and be on again
+            part = min(lowest(begun[0], step.middle[0], step.left[0]), lowest(begun[1], step.middle[1], step.left[1]))
+        if part == 1:
+            break
+        time, whole = part * time, False
     trusted *= fitting(step.error / system.tolerance)
-    if min(step.left) >= 0:  # yet a mode may have been over, and be on again
-        part = min(lowest(begun[0], step.middle[0], step.left[0]), lowest(begun[1], step.middle[1], step.left[1]))
-        if part < 1:
-            time *= part
-            step = stepped(system, start, first, mode, time)
     return step, time, trusted
 
 

@@ -117,7 +117,7 @@ DESIGNS = Path(__file__).parent / "designs"
 def test_no_engagement_of_a_loose_crank_is_missed() -> None:
     """It jerks ahead within a few degrees, and drives the wheel for two milliseconds."""
     design = fes_mj.load_design(DESIGNS / "loose_crank.toml")
-    ride = Ride(design, fes_mj.load_moments("p1p2"), Road(slope=0.0071), launch=0.864, start=1.204, duration=2.0)
+    ride = Ride(design, fes_mj.load_moments("p1p3"), Road(slope=0.0071), launch=0.864, start=1.204, duration=2.0)
     trace, finer = solved(ride), solved(ride, 2)
     assert np.count_nonzero(np.diff(trace.coasting)) == np.count_nonzero(np.diff(finer.coasting)) == 35
     assert speed_difference(trace, finer) < 1e-4
