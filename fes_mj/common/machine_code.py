@@ -22,8 +22,7 @@ def machine_code(function: Function) -> Function:
 
 
 def inlined_machine_code(function: Function) -> Function:
-    """The same as a part of each caller: a call hands on all arrays of a named tuple, as long as a formula takes."""
-    _files.add(function.__code__.co_filename)
+    """The same as a part of each caller: a call hands on all arrays of a named tuple, which takes as long as a sum."""
     return _njit(function, forceinline=True)
 
 
