@@ -234,19 +234,22 @@ def length_values(design: Design, lengths: FloatArray, polygon: ComplexArray) ->
 
 
 def motion_values(
-    turn: Cycles, speeds: PerJoint[FloatArray], known: PerJoint[FloatArray], gear_ratio: FloatArray
+    design: Design,
+    turn: Cycles,
+    speeds: PerJoint[FloatArray],
+    inside: PerJoint[FloatArray],
+    outside: FloatArray | None,
 ) -> FloatArray:
-    """Values of the paper's constraints on the turn, in their order, shape (n, 11); known: as MomentDrive.inside."""
+    """Values of motion_constraints that do not take long, in their order, of a batch with its gear ratios.
+
+    speeds: of the joints at gear ratio 1, deg/s. inside, outside: as MomentDrive; None if no limits of build hold.
+    """
+    ratio, hip = np.ravel(design.linkage.gear_ratio), turn.joints.hip
     ranges = [np.degrees(side) for joint in turn.joints for side in (joint.low, joint.high)]
-    rates = (speeds[joint] * gear_ratio for joint in JOINTS)
-    return np.column_stack([turn.turning.reach, *ranges, *rates, *known, gear_ratio, gear_ratio])
-
-
-def build_values(design: Design, turn: Cycles, outside: FloatArray) -> FloatArray:
-    """Values of build_constraints but for force and clearance, in their order, shape (n, 4); outside: share, (n,)."""
-    hip = turn.joints.hip
-    swing, angle = np.degrees(hip.high - hip.low), transmission_angle(design, turn)
-    return np.column_stack([hole_distance(design), angle, swing, outside])
+    columns = [turn.turning.reach, *ranges, *(speeds[joint] * ratio for joint in JOINTS), *inside, ratio, ratio]
+    if outside is not None:
+        columns += [hole_distance(design), transmission_angle(design, turn), np.degrees(hip.high - hip.low), outside]
+    return np.column_stack(columns)
 
 
 def margins(constraints: tuple[Constraint, ...], values: FloatArray) -> FloatArray:

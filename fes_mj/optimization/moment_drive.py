@@ -38,7 +38,7 @@ class MomentDrive:
         """How far joints come into the range of the moments, from whichever side, deg, (designs,); 0 or less: never."""
 
         def overlap(joint: str) -> FloatArray:
-            (low, high), (bottom, top) = _beside(joint, turn), turn.reference.ranges[joint]
+            low, high, bottom, top = _ends(joint, turn)
             common = np.degrees(np.minimum(high - bottom, top - low))
             # the angle beside a dead centre is too sharp for the parabola that found its extreme
             return np.asarray(np.where(turn.outside[1][joint], np.minimum(common, 0.0), common))
@@ -47,12 +47,9 @@ class MomentDrive:
 
     def outside(self, turn: Cycles) -> FloatArray:
         """Share of the turn outside the moments' range, (designs,); not 0 where it is left between two crank angles."""
-        excess = []
-        for joint in JOINTS:
-            (low, high), (bottom, top) = _beside(joint, turn), turn.reference.ranges[joint]
-            excess += [bottom - low, high - top]
-        between = (np.max(excess, axis=0) > NO_MORE / 2) / turn.angles[0].knee.shape[1]
-        return np.asarray(np.maximum(turn.outside[0], between))
+        ends = (_ends(joint, turn) for joint in JOINTS)
+        excess = np.max([(bottom - low, high - top) for low, high, bottom, top in ends], axis=(0, 1))
+        return np.asarray(np.maximum(turn.outside[0], (excess > NO_MORE / 2) / turn.angles[0].knee.shape[1]))
 
     def power(self, designs: Design, turn: Cycles, turns_per_s: FloatArray, within: BoolArray) -> FloatArray:
         """Mean crank power of one leg, W, shape (designs, sets); turns_per_s and `within`, who needs it: (designs,)."""
@@ -70,8 +67,8 @@ class MomentDrive:
         return pin_force(motion, torque_map(self.moments).along(motion, design.linkage.cadence))
 
 
-def _beside(joint: str, turn: Cycles) -> tuple[FloatArray, FloatArray]:
-    """A joint's smallest and largest angle, rad, taken by whole turns to where the moments' range is, shape (n,)."""
+def _ends(joint: str, turn: Cycles) -> tuple[FloatArray, FloatArray, float, float]:
+    """A joint's smallest and largest angle, (designs,), by whole turns beside the moments' range, and that's; rad."""
     low, high, *_ = turn.joints[joint]
     shift = turn.reference.turns_to_range(joint, low, high)
-    return np.asarray(low + shift), np.asarray(high + shift)
+    return low + shift, high + shift, *turn.reference.ranges[joint]

@@ -26,7 +26,6 @@ from fes_mj.optimization.limits import (
     VARIED,
     Constraint,
     Limits,
-    build_values,
     depth_inside,
     length_constraints,
     length_values,
@@ -38,7 +37,7 @@ from fes_mj.optimization.limits import (
 from fes_mj.optimization.moment_drive import MomentDrive
 from fes_mj.optimization.people import ONE_RIDER, People
 from fes_mj.optimization.stimulated import MuscleDrive
-from fes_mj.statics.cycles import CYCLE_POINTS, Cycles, cycles, joint_speeds
+from fes_mj.statics.cycles import CYCLE_POINTS, cycles, joint_speeds
 from fes_mj.statics.work_table import WorkTable, uncertain_table
 
 LENGTH_COUNT = len(VARIED) - 1  # all variables but the gear ratio, which comes last
@@ -173,7 +172,9 @@ class Problem:
     def _replaced(self, values: Iterable[Any]) -> Design:
         """The template with values for VARIED, but for what its kind lacks."""
         kind = self.template.linkage.kind
-        known = {name: value for name, value in zip(VARIED, values, strict=True) if kind in _kinds(name)}
+        known = {
+            name: value for name, value in zip(VARIED, values, strict=True) if kind in COMPONENTS[name].variable.kinds
+        }
         return replaced(self.template, known)
 
     def evaluate(self, x: FloatArray, to_beat: FloatArray | float = -np.inf) -> Evaluation:
@@ -202,21 +203,13 @@ class Problem:
                 gear_ratio[sound] = np.fmin(for_all * (1 - _HAIR), self.gear_ratios[1])
             ratios = np.repeat(gear_ratio[sound], riders)
             geared = ridden.with_linkage(gear_ratio=ratios[:, None])
-            at_once = self._at_once(geared, turn, speeds, ratios)
+            outside = self.drive.outside(turn) if self.limits.build else None
+            at_once = motion_values(geared, turn, speeds, self.drive.inside(turn), outside)
             within = np.all(margins(self.motion[: at_once.shape[1]], at_once) >= 0, axis=1)
             power[sound] = self.people.power(self.drive.power(geared, turn, per_s * ratios, within))
             hopeful = within & np.repeat((self.drive.worth(power) >= to_beat)[sound], riders)
             motion[sound] = self._worst(np.column_stack([at_once, *self._in_time(geared, hopeful)]))
         return Evaluation(np.column_stack([free, gear_ratio]), power, np.hstack([lengths, motion]), self.constraints)
-
-    def _at_once(
-        self, design: Design, turn: Cycles, speeds: PerJoint[FloatArray], gear_ratio: FloatArray
-    ) -> FloatArray:
-        """Values of the constraints on the turn that do not take long, in their order, shape (n, constraints)."""
-        values = motion_values(turn, speeds, self.drive.inside(turn), gear_ratio)
-        if not self.limits.build:
-            return values
-        return np.column_stack([values, build_values(design, turn, self.drive.outside(turn))])
 
     def _in_time(self, design: Design, within: BoolArray) -> list[FloatArray]:
         """Values of the constraints that take long, of the designs `within` all others, else NaN, in their order."""
@@ -258,11 +251,6 @@ class Problem:
         """Of each constraint on the turn over all riders, shape (n, constraints); values: (n * riders, constraints)."""
         riders = values.reshape(-1, self.people.count, values.shape[1])
         return np.asarray(np.where([c.at_least for c in self.motion], riders.min(axis=1), riders.max(axis=1)))
-
-
-def _kinds(name: str) -> tuple[str, ...]:
-    """Of linkages that have a component."""
-    return COMPONENTS[name].variable.kinds
 
 
 def make_problem(
@@ -307,7 +295,7 @@ def make_problem(
     if like:
         known = replace(known, gear_ratio_max=own.linkage.gear_ratio)
     if kind == "trt":
-        absent = [kind not in _kinds(name) for name in VARIED]
+        absent = [kind not in COMPONENTS[name].variable.kinds for name in VARIED]
         known = replace(known, search=np.where(np.array(absent)[:, None], 0.0, known.search))
     other, table = load_design(compared_with), uncertain_table(moments) if caution else WorkTable.of(moments)
     # a hair above, so that the design itself is within its own limits
