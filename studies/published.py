@@ -104,7 +104,7 @@ def figure(records: list[dict[str, Any]]) -> Figure:
         yticks=range(len(shown)),
         xlabel="prediction in half widths of the measurement (grey),\nbeside a direction in its own unit",
     )
-    axes.set_yticklabels([record["name"] for record in reversed(shown)], fontsize=7)
+    axes.set_yticklabels([record["name"] for record in reversed(shown)], fontsize=8)
     for name, colour in zip(VERDICTS, (SERIES[2], SERIES[1], SERIES[0]), strict=True):
         axes.plot([], [], color=colour, lw=3, label=name)
     made.legend(loc="outside lower center", ncols=3)

@@ -23,7 +23,7 @@ from fes_mj.cli.options import (
     needs,
     speed_at,
 )
-from fes_mj.cli.tables import or_dash, print_notes, span, with_error
+from fes_mj.cli.tables import or_dash, print_notes, span
 from fes_mj.common.console import conclude, print_table, progress_bar, say
 from fes_mj.common.errors import InputError, require_extra
 from fes_mj.common.text import printable
@@ -184,7 +184,7 @@ def _print(result: SeatFit) -> None:
     rows = [("seat", seat_text(result.seat)), ("seat angle, deg", f"{summary['seat_angle_deg']:.1f}")]
     if result.static:
         rows += [
-            ("mean crank power, W", with_error(summary["power_mean_W"], summary["power_sd_W"])),
+            ("mean crank power as the paper assumes, W", f"{summary['power_mean_W']:.2f}"),
             ("with the seat as drawn, W", or_dash(summary["power_unmoved_W"], ".2f", "does not turn")),
             ("the paper's rider, seat as drawn, W", or_dash(summary["power_paper_rider_W"], ".2f", "does not turn")),
             *((f"{joint} angle, deg", span(ends)) for joint, ends in result.static.first.joint_range_deg.items()),

@@ -35,7 +35,11 @@ def needs(flag: str) -> Callable[[ArgumentCollection], None]:
     return check
 
 
-DesignName: TypeAlias = Annotated[str, Parameter(help="trt, r1, r2, d1, d2, or a path to a design file.")]
+DESIGN_HELP = (
+    "Of the paper trt, the traditional recumbent tricycle (four-bar), r1 or r2, a crank-rocker tricycle (CRT), d1 or "
+    "d2, a coupler-driven one (CDT); or a path to a design file."
+)
+DesignName: TypeAlias = Annotated[str, Parameter(help=DESIGN_HELP)]
 Flag: TypeAlias = Annotated[bool, Parameter(negative="")]
 Out: TypeAlias = Annotated[Path, Parameter(name=["--out", "-o"])]
 Cadence: TypeAlias = Annotated[float, Parameter(validator=bounds("cadence_rpm"))]
@@ -64,7 +68,8 @@ class MomentsOptions:
     """Whose joint moments.
 
     Args:
-        group: Rider group whose recovered joint moments are used (default p1p2).
+        group: Rider group whose recovered joint moments are used: p1p2 (default), three quarters of those measured, who
+            push in the first two phases of the turn, or p1p3, the others.
         moments: Your own joint moments instead: a CSV with the header crank_angle_deg,knee_Nm,hip_Nm (crank angle from
             top dead centre), or a measurement file (.toml). With two legs given twice, the right leg's first.
     """

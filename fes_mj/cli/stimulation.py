@@ -94,7 +94,7 @@ def _print(settings: Settings) -> None:
     say(f"0: {CRANK_ZERO}; the left leg's windows are 180 deg later. Delay and rise of the muscles are counted in.")
     for note in content["notes"]:
         say(f"note: {note}")
-    say("Effort: share of the turn x strength x largest force, per that of the measurement.")
+    say("Effort: share of the turn x strength x largest force, per that of the measurement. +-: over the riders alone.")
 
 
 def _totals(content: dict[str, Any]) -> list[tuple[str, str]]:

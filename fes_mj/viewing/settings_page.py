@@ -42,7 +42,7 @@ def settings_figure(settings: Settings) -> Figure:
     _turn(figure.add_axes((0.06, 0.145, 0.25, 0.27)), main)
     _by_cadence(figure.add_axes((0.38, 0.145, 0.29, 0.27)), settings)
     _powers(figure.add_axes((0.74, 0.145, 0.23, 0.27)), settings)
-    figure.text(0.04, 0.02, literal(_notes(settings)), size=7.5, color=FAINT, va="bottom", linespacing=1.4)
+    figure.text(0.04, 0.02, literal(_notes(settings)), size=8, color=FAINT, va="bottom", linespacing=1.4)
     return figure
 
 
