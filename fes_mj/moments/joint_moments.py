@@ -87,7 +87,10 @@ class JointMoments(Brief):
 
     def at(self, crank_angle: Any) -> PerJoint[FloatArray]:
         """Moments at crank angles from top dead centre, rad, any shape, N m."""
-        terms = fourier(crank_angle)
+        return self.along(fourier(crank_angle))
+
+    def along(self, terms: FloatArray) -> PerJoint[FloatArray]:
+        """The same where the terms of the series (fourier.fourier) are known."""
         return self.coefficients.map(lambda series: np.asarray(np.einsum("...j,j->...", terms, series)))
 
     def of_leg(self, name: str) -> "JointMoments":

@@ -6,7 +6,7 @@ angle, moving in this direction? The moment measured there is the moment deliver
 
 import math
 from collections.abc import Callable
-from functools import cached_property, lru_cache, partial
+from functools import cache, cached_property, lru_cache, partial
 from typing import Any
 
 import numpy as np
@@ -16,6 +16,7 @@ from fes_mj.linkage.joints import PerJoint
 from fes_mj.linkage.kinematics import Motion
 from fes_mj.linkage.legs import Leg
 from fes_mj.linkage.torque_source import LegControl
+from fes_mj.moments.fourier import fourier
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.reference_tricycle import INVERSES, ReferenceTricycle
 
@@ -37,7 +38,7 @@ class TorqueMap:
     @cached_property
     def table(self) -> PerJoint[FloatArray]:
         """Moment at every crank angle of GRID, N m."""
-        return self.moments.at(GRID)
+        return self.moments.along(_grid_terms())
 
     def source_angle(self, joint: str, angle: Any, rate: Any) -> FloatArray:
         """Crank angle of the measurement, rad from top dead centre; see ReferenceTricycle.source_angle."""
@@ -71,6 +72,11 @@ class TorqueMap:
     def parameters(self, joint: str) -> tuple[tuple[float, ...], float, float]:
         """What scalar_map must know of the tricycle of the measurement."""
         return source_parameters(self.reference, joint)
+
+
+@cache
+def _grid_terms() -> FloatArray:
+    return fourier(GRID)
 
 
 @lru_cache(maxsize=32)

@@ -17,7 +17,7 @@ from fes_mj.optimization.limits import DEFAULT
 from fes_mj.optimization.search import Result
 
 PAPER = ["--limits", "paper"]  # without forces and clearances, which take long
-QUICK = ["--budget", "6000", "--searches", "1", "--seed", "2", *PAPER]
+QUICK = ["--budget", "2000", "--searches", "1", "--seed", "2", *PAPER]
 # from a feasible start: where the file and not the search is looked at
 FROM_D1 = ["--start", "d1", "--speeds-of", "d1", "--budget", "1000", "--seed", "2", *PAPER]
 
@@ -30,7 +30,7 @@ def test_the_winner_is_what_the_other_commands_see(tmp_path: Path, capsys: pytes
     content = json.loads(capsys.readouterr().out)
     assert content["feasible"]
     assert content["violations"] == []
-    assert content["evaluations"] == 6000
+    assert content["evaluations"] == 2000
     assert content["design_file"] == str(best)
     assert content["gain_W"] > 0
     assert content["gain_deviation_W"] > 0
@@ -88,7 +88,7 @@ def test_a_front_beside_the_design(tmp_path: Path, capsys: pytest.CaptureFixture
     out = tmp_path / "front.toml"
     assert (
         run(
-            ["optimize", "cdt", "--method", "nsga-ii", "--smooth", "--budget", "4000", *PAPER, "-o", str(out), "--json"]
+            ["optimize", "cdt", "--method", "nsga-ii", "--smooth", "--budget", "2000", *PAPER, "-o", str(out), "--json"]
         )
         == 0
     )
@@ -292,7 +292,7 @@ def test_a_problem_that_nothing_solves(tmp_path: Path, capsys: pytest.CaptureFix
     path.write_text(DEFAULT.read_text().replace("hip_deg = [85.0, 120.0]", "hip_deg = [5.0, 6.0]"))
     assert run(["optimize", "crt", "--problem", str(path), *QUICK]) == 2
     message = capsys.readouterr().err.replace("\n", " ")
-    assert "no feasible crt found in 6000 evaluations; the closest violates: " in message
+    assert "no feasible crt found in 2000 evaluations; the closest violates: " in message
     assert "hip_max" in message
 
 

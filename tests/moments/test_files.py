@@ -104,6 +104,7 @@ def by_scatter(measurement: Measurement) -> JointMoments:
     return replace(measurement.moments, covariance=covariance)
 
 
+@pytest.mark.long
 def test_three_noisy_turns_are_within_their_own_error_bar(tmp_path: Path) -> None:
     """Of fifty such trials about 68 % are within one standard deviation, and all within half a percent."""
     exact, within = power(plain(tmp_path)), 0

@@ -29,6 +29,7 @@ def test_what_was_not_declared_is_found(trial: Trial, expected: tuple[float, ...
     assert [number.declared for number in numbers] == pytest.approx((abs(R1), R2, SEAT))
 
 
+@pytest.mark.long
 def test_noise_is_in_the_error(tmp_path: Path) -> None:
     """Of thirty trials with half a degree of noise two thirds are within one deviation."""
     within = []

@@ -18,7 +18,7 @@ def test_the_front_is_feasible_and_nobody_on_it_is_dominated() -> None:
     problem = replace(problem_of("d1"), table=WorkTable.of(*both))
     seen: list[list[float]] = []
     front = pareto_front(
-        problem, both, budget=5000, seed=1, smooth=True, improved=lambda x, power: seen.append([power, *x])
+        problem, both, budget=3000, seed=1, smooth=True, improved=lambda x, power: seen.append([power, *x])
     )
     assert problem.evaluate(front.x).feasible.all()
     assert front.fluctuation is not None

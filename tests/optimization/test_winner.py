@@ -98,7 +98,7 @@ def test_caution_trades_gain_for_certainty() -> None:
         own = fes_mj.load_design("d2")
         baseline = cycles(own, table).work[0] * own.linkage.cadence / (2 * np.pi)
         problem = Problem(own, table, base.limits, base.joint_speed, MomentDrive(None, caution, baseline))
-        x = run_searches(problem, "cma-es", budget=6000, seed=4)[0].x
+        x = run_searches(problem, "cma-es", budget=4500, seed=4)[0].x
         gains.append(gain(problem.evaluate(x[None]).power[0], baseline))
     assert gains[1].deviation < gains[0].deviation
     assert gains[1].mean > 2 * gains[1].deviation
