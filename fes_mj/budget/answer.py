@@ -7,6 +7,7 @@ muscles are is hardly known, so that a rider's power per that on the paper's tri
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -144,6 +145,7 @@ def answer(
     return Answer(design, mean, paper, rider, trt)
 
 
+@lru_cache(maxsize=32)  # the tricycle is compared with every design
 def rider_powers(design: Design, riders: Riders, cadence: float | None = None, duty: float = DUTY) -> FloatArray:
     """Mean crank power of one leg of every rider, stimulated as is best in expectation, W, shape (members,).
 
@@ -160,4 +162,6 @@ def rider_powers(design: Design, riders: Riders, cadence: float | None = None, d
         power = MuscleTurn(pulled, activation(windows, riders, cadence)).power_mean[:, 0]
         reach, swing = leg_reach(motion.design, motion.points["pedal"].value), np.ptp(motion.joint_angle.hip, axis=-1)
         known = batch_turning(motion.design, reach, swing).turns & anatomy().in_range(riders.flexion_each(motion))[:, 0]
-    return np.where(known, power, np.nan)
+    power = np.where(known, power, np.nan)
+    power.setflags(write=False)
+    return power

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -97,11 +98,19 @@ def load_riders(source: str | Path) -> Riders:
 
     Raises InputError for a file that is none.
     """
+    shipped = SHIPPED / f"{source}.npz"
+    return _shipped(shipped) if shipped.is_file() else _read(Path(source))
+
+
+@cache
+def _shipped(path: Path) -> Riders:
+    return replace(_read(path), measured_on=PAPER_TRICYCLE)
+
+
+def _read(path: Path) -> Riders:
     import zlib
     from zipfile import BadZipFile
 
-    shipped = SHIPPED / f"{source}.npz"
-    path = shipped if shipped.is_file() else Path(source)
     try:
         with path.open("rb") as file, np.load(file, allow_pickle=False) as stored:
             columns = {name: np.asarray(stored[name], float) for name in ("likelihood", "measured_on", *priors())}
@@ -116,5 +125,5 @@ def load_riders(source: str | Path) -> Riders:
         raise InputError(f"{path}: an ensemble of riders with columns that do not fit each other; {_WRITES}")
     *numbers, cadence = map(float, columns["measured_on"])
     design = replaced(PAPER_TRICYCLE.design, dict(zip(_TRICYCLE, numbers, strict=True)))
-    measured_on = PAPER_TRICYCLE if shipped == path else ReferenceTricycle(design, cadence)
-    return Riders(path.stem, {name: columns[name] for name in priors()}, columns["likelihood"], measured_on)
+    quantities = {name: columns[name] for name in priors()}
+    return Riders(path.stem, quantities, columns["likelihood"], ReferenceTricycle(design, cadence))

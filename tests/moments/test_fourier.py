@@ -49,7 +49,7 @@ def test_noisy_samples_are_averaged(count: int, noise: float) -> None:
 @pytest.mark.parametrize("span", [6.0, 60.0, 180.0, 300.0, 360.0])
 @pytest.mark.parametrize("count", [6, 12, 20, 36, 60, 400])
 def test_no_curve_swings_far_beyond_its_samples(count: int, span: float) -> None:
-    """Wherever they are, near each other or far apart, and however noisy: the curves of a fit know nothing of others."""
+    """Wherever they are, near each other or far apart, and however noisy; a fit's curves know nothing of each other."""
     random, noise = np.random.default_rng(count), np.repeat([0.0, 0.01, 0.3, 2.0], 2)
     for _ in range(5):
         angle = np.radians(random.uniform(0, span, count))
