@@ -20,6 +20,8 @@ LINKS = {"thigh": "#cdb399", "shank": "#e0c9b0", "crank": "#e07d28", "rocker": "
 SERIES = ("#1f4fd8", "#d97a00", "#3a7d44")
 # Whose moments a power is due to: the groups, then others; colours that stand for nothing else
 MOMENTS = ("#6b2fb3", "#7a4a1e", "#00695c")
+# The paper's designs side by side: the traditional one, crank-rockers green, coupler-driven ones red
+BY_DESIGN = {"trt": "#20242c", "r1": "#7fb069", "r2": "#2f6b3c", "d1": "#c01c28", "d2": "#e8899b"}
 # Parts of a whole, stacked, the last for what is left
 PARTS = ("#1f4fd8", "#8a8f98", "#c01c28", "#d97a00", "#3a7d44", "#c4189a", "#d9dce1")
 GOOD, BAD = "#1a7f37", "#c01c28"

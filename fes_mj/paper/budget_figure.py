@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fes_mj.budget.answer import Answer
-from fes_mj.common.style import FAINT, PARTS, SERIES
+from fes_mj.common.style import BY_DESIGN, COLOURS, FAINT, PARTS
 from fes_mj.moments.joint_moments import GROUPS
 from fes_mj.paper.error_budget import GAINS, Budgets, ratios
 from fes_mj.paper.printed import SIX_BARS
@@ -39,7 +39,7 @@ def answer_figure(answers: Mapping[tuple[str, str], Answer]) -> Figure:
     axes: Any = figure.subplots(1, len(GROUPS), sharey=True)
     for ax, group in zip(axes, GROUPS, strict=True):
         per_trt = [answers[name, group].per(answers["trt", group]) for name in SIX_BARS]
-        for place, (label, colour) in enumerate(zip(_BOTH, SERIES, strict=False)):
+        for place, (label, colour) in enumerate(zip(_BOTH, (COLOURS["quasi-static"], COLOURS["mujoco"]), strict=True)):
             value, low, high = np.array([both[place] for both in per_trt], float).T
             rows = np.arange(len(SIX_BARS)) + 0.14 * (2 * place - 1)
             ax.errorbar(value, rows, xerr=(value - low, high - value), fmt="o", color=colour, label=label, capsize=3)
@@ -66,10 +66,10 @@ def _bars(ax: Axes, budgets: Budgets, group: str) -> None:
 
 def _curves(ax: Axes, budgets: Budgets, group: str) -> None:
     """Of every six-bar."""
-    for name, colour in zip(SIX_BARS, PARTS, strict=False):
+    for name in SIX_BARS:
         ratio = np.sort(np.nan_to_num(ratios(budgets, name, group), nan=-np.inf))  # beats nothing
         above = 100 * (1 - np.searchsorted(ratio, _RATIOS, side="right") / ratio.size)
-        ax.plot(_RATIOS, above, color=colour, label=name.upper())
+        ax.plot(_RATIOS, above, color=BY_DESIGN[name], label=name.upper())
     ax.set(xlabel="ratio", xlim=(0.2, 2.8), ylim=(0, 103), xticks=_TICKS)
     ax.set_xticklabels([f"{tick:g}" for tick in _TICKS], fontsize=8)
     for gain in GAINS:

@@ -40,7 +40,7 @@ def moments_over_crank(runs: Runs) -> Figure:
             _band(ax, np.degrees(_TURN), posterior.curve(joint, _TURN - top), joint, joint)
         ax.axvline(np.degrees(top), color=FAINT, lw=0.8, ls=":", label="top dead centre")
         _turn(ax, f"{group.upper()}, {title}", "joint moment, N m")
-    axes.flat[0].legend(title="mean, band of one sd")
+    _legend_below(figure, axes)
     return figure
 
 
@@ -143,11 +143,11 @@ def scores(runs: Runs) -> Figure:
     """Printed powers predicted without themselves, in standard deviations: are the stated errors right?"""
     figure, axes = _grid(1, 2, (7.2, 3.4))
     for number, (ax, title) in enumerate(zip(axes.flat, BASES, strict=True)):
-        for group, marker, colour in zip(GROUPS, "os", ("knee", "hip"), strict=True):
+        for group, marker, colour in zip(GROUPS, "os", MOMENTS, strict=False):
             rows = [out for out in runs.known.predictions if out.row.group == group]
             values = np.array([out.scores[number] for out in rows])
             label = f"{group.upper()}, rms {rms(values):.2f}"
-            ax.plot(values, range(len(rows)), marker, color=COLOURS[colour], label=label)
+            ax.plot(values, range(len(rows)), marker, color=colour, label=label)
         for sd in (1, 2):
             ax.axvspan(-sd, sd, color="0.5", alpha=0.12, lw=0)
         names = [out.row.design.upper() + " and 15 W" * (out.title != "itself") for out in rows]

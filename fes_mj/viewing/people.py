@@ -21,16 +21,16 @@ def population_figure(fits: Sequence[PopulationFit]) -> Figure:
 
     White is where nobody can ride.
     """
-    figure = Figure(figsize=(2.6 + 1.9 * len(fits), 5.4), layout="constrained")
+    figure = Figure(figsize=(2.2 + 1.0 * len(fits), 4.2), layout="constrained")
     axes = figure.subplots(2, len(fits), squeeze=False, sharex=True, sharey=True)
     powers = np.concatenate([power_map.power.ravel() for fit in fits for power_map in (fit.drawn, fit.map)])
     levels = np.arange(np.floor(np.nanmin(powers)), np.ceil(np.nanmax(powers)) + 1)
     for column, fit in zip(axes.T, fits, strict=True):
         for ax, power_map, seat in zip(column, (fit.drawn, fit.map), ("as drawn", "moved"), strict=True):
             mesh = _draw(ax, fit, power_map, levels)
-            ax.set_title(literal(f"{fit.design.name}, seat {seat}"), loc="left", weight="bold")
+            ax.set_title(literal(f"{fit.design.name}, {seat}"), loc="left", size=9, weight="bold")
             ax.label_outer()
-    figure.colorbar(mesh, ax=axes, label="mean crank power, W")
+    figure.colorbar(mesh, ax=axes, label="mean crank power, W, as the paper assumes")
     handles, labels = axes[0, 0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=1 if len(fits) == 1 else 3)
     return figure
@@ -44,8 +44,8 @@ def _draw(ax: Axes, fit: PopulationFit, power_map: PowerMap, levels: FloatArray)
         riders = [sample.people.rider(percentile) for percentile in _PERCENTILES]
         legs = [100 * rider.thigh for rider in riders], [100 * rider.shank for rider in riders]
         label = f"{who}, percentiles {', '.join(map(str, _PERCENTILES))}"
-        ax.plot(*legs, _MARKERS[who] + "-", color=INK, lw=0.8, ms=5, mfc="white", label=label)
-    ax.plot(100 * Rider.thigh, 100 * Rider.shank, "*", ms=9, color=INK, mfc="white", label="the paper's rider")
-    ax.set(xlabel="thigh, cm", ylabel="shank, knee to axle level, cm")
+        ax.plot(*legs, _MARKERS[who] + "-", color=INK, lw=0.8, ms=4, mfc="white", label=label)
+    ax.plot(100 * Rider.thigh, 100 * Rider.shank, "*", ms=8, color=INK, mfc="white", label="the paper's rider")
+    ax.set(xlabel="thigh, cm", ylabel="shank (knee to axle), cm")
     ax.grid(visible=False)
     return mesh

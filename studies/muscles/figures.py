@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from fes_mj.common.style import BAD, FAINT, INK, MOMENTS, SERIES
+from fes_mj.common.style import BY_DESIGN, FAINT, INK, SERIES
 from fes_mj.linkage.design_file import DESIGNS, load_design
 from fes_mj.muscles.anatomy import GROUPS
 from fes_mj.muscles.by_angle import Gains
@@ -49,7 +49,7 @@ def unity(axes: Axes, label: str) -> None:
 
 def null_test(known: Gains) -> Figure:
     """What the paper's rule makes of riders who are known, beside what is true of them."""
-    figure = Figure(figsize=(9.5, 3.8), layout="constrained")
+    figure = Figure(figsize=(7.2, 3.4), layout="constrained")
     axes, cloud = figure.subplots(1, 2, width_ratios=(3, 2))
     ends, paper = (0.05, 0.5, 0.95), paper_gains()
     for place, name in enumerate(SIX_BARS):
@@ -73,7 +73,7 @@ def null_test(known: Gains) -> Figure:
 
 def gains(tables: Mapping[str, Rows]) -> Figure:
     """Gains of every six-bar by rule, for the P1P2 riders; at the paper's gears and at one cadence."""
-    figure = Figure(figsize=(9.5, 5.2), layout="constrained")
+    figure = Figure(figsize=(7.2, 4.6), layout="constrained")
     panels = figure.subplots(1, 2, sharex=True, sharey=True)
     rules = ("best, 100 deg", "measured", "stimulation-by-angle", "by-angle")
     colours = (SERIES[0], SERIES[2], FAINT, SERIES[1])
@@ -96,10 +96,10 @@ def gains(tables: Mapping[str, Rows]) -> Figure:
 
 def windows() -> Figure:
     """Best windows of the five designs, and the power of both legs over the turn (P1P2, at the paper's gears)."""
-    figure = Figure(figsize=(9.5, 4.2), layout="constrained")
+    figure = Figure(figsize=(7.2, 3.8), layout="constrained")
     bars, power = figure.subplots(1, 2)
-    riders, colours = load_riders("p1p2"), (INK, MOMENTS[0], MOMENTS[1], BAD, MOMENTS[2])
-    for place, (name, colour) in enumerate(zip(DESIGNS, colours, strict=True)):
+    riders = load_riders("p1p2")
+    for place, (name, colour) in enumerate(BY_DESIGN.items()):
         design = load_design(name)
         setting = Setting.best(design, riders, design.linkage.cadence)
         for number, group in enumerate(GROUPS):
@@ -121,10 +121,10 @@ def windows() -> Figure:
 
 def over_time(cadences: Rows) -> Figure:
     """Power of both legs by cadence, and on the TRT over half an hour."""
-    figure = Figure(figsize=(9.5, 4.0), layout="constrained")
+    figure = Figure(figsize=(7.2, 3.8), layout="constrained")
     by_cadence, course = figure.subplots(1, 2)
-    rows, colours = [row for row in cadences if row["group"] == "p1p2"], (INK, *MOMENTS[:2], BAD, MOMENTS[2])
-    for name, colour in zip(DESIGNS, colours, strict=True):
+    rows = [row for row in cadences if row["group"] == "p1p2"]
+    for name, colour in BY_DESIGN.items():
         by_cadence.plot(
             [row["rpm"] for row in rows], [row[f"{name.upper()}, W"] for row in rows], "o-", ms=3, color=colour,
             label=name.upper(),
@@ -139,6 +139,6 @@ def over_time(cadences: Rows) -> Figure:
         for (title, recovery), style in zip(recoveries().items(), ("-", (0, (4, 2))), strict=True):
             label = f"{width} deg, {title}"
             course.plot(MINUTES, tired(turn, recovery), color=colour, ls=style, label=label)
-    course.set(xlabel="minutes on the TRT, windows and recovery as named", xlim=(0, 30), ylim=(0, None))
+    course.set(xlabel="minutes on the TRT", xlim=(0, 30), ylim=(0, None))
     course.legend(loc="upper right")
     return figure
