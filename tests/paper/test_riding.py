@@ -1,6 +1,7 @@
 """The page on riding: what its rows say, by rides of its own, and what must hold between them."""
 
 import json
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -9,23 +10,56 @@ import pytest
 
 from fes_mj import load_design
 from fes_mj.budget.unknowns import MASSES, priors
-from fes_mj.muscles.drive import Muscles
+from fes_mj.common.units import KMH
+from fes_mj.muscles.drive import Muscles, load_muscles
 from fes_mj.muscles.riders import load_riders
 from fes_mj.paper import riding
 from fes_mj.paper.printed import table1
-from fes_mj.riding.ride import TRANSMISSIONS, Ride
+from fes_mj.riding.ride import TRANSMISSIONS, Ride, Road, balancing_slope
 from fes_mj.riding.stimulated import stimulated_rider
+from fes_mj.riding.trace import ride as solved
+from fes_mj.riding.verdict import FASTEST_CADENCE
 
 PAGE = json.loads((Path(__file__).parents[2] / "results" / "reproduction.json").read_text(encoding="utf-8"))["riding"]
 SPEEDS = {
     (row["design"], row["group"], row["transmission"]): row
     for row in PAGE["How fast they ride, and whether they keep riding"]
 }
+GEARS = {(row["design"], row["group"], row["transmission"]): row for row in PAGE["The gear ratio that suits"]}
+
+
+def printed(cell: str | None) -> str | None:
+    """The value of a cell without its error."""
+    return None if cell is None else cell.split(" ")[0]
+
+
+def in_kmh(speed: float | None) -> str | None:
+    """A speed in m/s as it is printed."""
+    return None if speed is None else f"{speed / KMH:.1f}"
 
 
 def test_every_design_rides_with_both_groups_and_transmissions() -> None:
     assert len(SPEEDS) == 4 * len(table1()) == 20
     assert len(PAGE["The gear ratio that suits"]) == len(PAGE["From where they start, and what they climb"]) == 20
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("name", "group", "transmission"), [("trt", "p1p3", "fixed"), ("d1", "p1p2", "freewheel")])
+def test_a_row_is_what_a_ride_alone_says(name: str, group: str, transmission: str) -> None:
+    """On the flat, on its slope and in its best gear, by the muscles that `fes_mj ride` takes."""
+    design, muscles, row = load_design(name), load_muscles(group), SPEEDS[name.upper(), group, transmission]
+    ride = Ride(design, stimulated_rider(muscles, design), transmission=transmission)
+    uphill = solved(replace(ride, road=Road(slope=balancing_slope(ride))))
+    assert printed(row["speed, km/h"]) == in_kmh(solved(ride).mean_speed)
+    assert row["slope, %"] == pytest.approx(100 * uphill.ride.road.slope, rel=1e-6)
+    assert row["on this slope"] == ("rides" if uphill.rides else f"stops after {uphill.stopped_at:.0f} s")
+    gear = GEARS[name.upper(), group, transmission]
+    best = float(gear["best on the flat"].split(" ")[0])
+    ratio = min(riding.RATIOS * design.linkage.gear_ratio, key=lambda ratio: abs(ratio - best))
+    geared = design.with_linkage(gear_ratio=float(ratio))
+    windows_at = min(geared.linkage.cadence, FASTEST_CADENCE)  # as the table's note says
+    ride = Ride(geared, stimulated_rider(muscles, geared, windows_at), transmission=transmission)
+    assert f"{gear['speed, km/h']:.1f}" == in_kmh(solved(ride).mean_speed)
 
 
 def test_everything_that_matters_on_a_road_is_drawn_and_always_the_same() -> None:
