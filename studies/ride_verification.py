@@ -5,8 +5,8 @@
 Both parts, each with a page of its own: results/ride_verification.md and results/ride_random.md.
 
 The paper's designs with both groups and transmissions, for a minute: by muscles on the flat, and by muscles and by
-moments on the slope that their mean power balances at 5.71 km/h. Random linkages 0.2 to 30 mm from their dead centres for five
-seconds, or until nothing more can come, half of them by moments and half by muscles.
+moments on the slope that their mean power balances at 5.71 km/h. Random linkages 0.2 to 30 mm from their dead centres
+for five seconds, or until nothing more can come, half of them by moments and half by muscles.
 """
 
 import argparse
