@@ -7,7 +7,7 @@ import mujoco
 import numpy as np
 
 from fes_mj.common.arrays import FloatArray, IntArray
-from fes_mj.common.machine_code import machine_code
+from fes_mj.common.machine_code import inlined_machine_code
 from fes_mj.linkage.legs import TWO_LEGS
 from fes_mj.moments.drive import drive as driven_by_moments
 from fes_mj.moments.joint_moments import JointMoments
@@ -115,7 +115,7 @@ def memory_of(model: mujoco.MjModel) -> Memory:
     return Memory(model.tendon_range.reshape(-1), np.zeros(shape), np.full(shape, np.nan))
 
 
-@machine_code
+@inlined_machine_code
 def act(control: RoadControl, memory: Memory, qpos: Any, speeds: Any, ctrl: Any) -> None:
     """Set the moments, and keep the freewheel's limit at the length reached.
 
@@ -133,7 +133,7 @@ def act(control: RoadControl, memory: Memory, qpos: Any, speeds: Any, ctrl: Any)
             pull(control, memory, leg, qpos, speeds, ctrl)
 
 
-@machine_code
+@inlined_machine_code
 def pull(control: RoadControl, memory: Memory, leg: int, qpos: Any, speeds: Any, ctrl: Any) -> None:
     """Set the moments of a leg's muscles."""
     knee, hip = control.knee[leg], control.hip[leg]
