@@ -30,6 +30,7 @@ def main() -> None:
         page.press("#number-R2", "Enter")
         page.wait_for_selector("body[data-updates='2']")
         page.wait_for_selector("#making .verdict:has-text('apart')")
+        page.wait_for_selector("#both tr[data-name=rider]:not(:has-text('…'))")
         page.fill("#angle", str(ANGLE))
         page.evaluate("document.activeElement.blur()")
         page.screenshot(path=PICTURE)

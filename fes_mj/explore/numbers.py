@@ -31,7 +31,7 @@ def numbers(design: Design, compared: Design, moments: JointMoments) -> dict[str
     return {
         "rider_power_mean_W": power and power.value,
         "rider": power and power.text(1),
-        "numbers": shown(_rows(own, *own.per(other))),
+        "both": _both(own, *own.per(other)),
         "why": own.missing or None,
     }
 
@@ -68,17 +68,16 @@ def _answered(design: Design, moments: JointMoments) -> Answer:
     return answer(design, legs, load_riders(moments.name) if moments.name in GROUPS else None)
 
 
-def _rows(own: Answer, paper: Estimate | None, rider: Estimate | None) -> Iterator[Number]:
-    rows = (
-        ("assumed", "as the paper assumes, 5 to 95 %", own.paper_power, 2, "W"),
-        ("assumed_compared", "as the paper assumes, per compared", paper, 2, ""),
-        ("rider", "for a rider, best timing", own.rider_power, 1, "W"),
-        ("rider_per_trt", "for a rider, per timed TRT", own.rider_ratio, 2, ""),
-        ("rider_compared", "for a rider, per compared", rider, 2, ""),
-    )
-    for name, words, estimate, digits, unit in rows:
-        if estimate:
-            yield name, words, estimate.text(digits), unit
+def _both(own: Answer, paper: Estimate | None, rider: Estimate | None) -> dict[str, list[list[str] | None]]:
+    """By number: W, per compared, per the equally timed TRT, each as text with its interval; None if not known."""
+    rows = {
+        "assumed": ((own.paper_power, 2), (paper, 2), (None, 2)),
+        "rider": ((own.rider_power, 1), (rider, 2), (own.rider_ratio, 2)),
+    }
+    return {
+        name: [[f"{cell.value:.{digits}f}", cell.interval(digits)] if cell else None for cell, digits in cells]
+        for name, cells in rows.items()
+    }
 
 
 def _windows(turn: MuscleStatic) -> Iterator[Number]:

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 import fes_mj
-from fes_mj.common.text import typeset
 from fes_mj.explore.numbers import by_muscles, numbers
 from tests.cli.conftest import answer
 
@@ -15,16 +14,15 @@ def test_it_says_what_static_says(capsys: pytest.CaptureFixture[str]) -> None:
     _, result = answer(capsys, "static", "d1", "d2", "--group", "p1p3")
     shown, (_, ratio), content = numbers(D2, D1, P1P3), result["ratios"], result["designs"][1]
     assert shown["rider_power_mean_W"] == content["rider_power_mean_W"]
-    rows = {row["name"]: row["text"] for row in shown["numbers"]}
-    assert shown["rider"] == rows["rider"]
-    for row, value, (low, high), digits in (
-        ("assumed", content["paper_power_mean_W"], content["paper_power_interval_W"], 2),
-        ("assumed_compared", ratio["paper_power_ratio"], ratio["paper_power_ratio_interval"], 2),
-        ("rider", content["rider_power_mean_W"], content["rider_power_interval_W"], 1),
-        ("rider_per_trt", content["rider_power_per_trt"], content["rider_power_per_trt_interval"], 2),
-        ("rider_compared", ratio["rider_power_ratio"], ratio["rider_power_ratio_interval"], 2),
+    for row, column, value, (low, high), digits in (
+        ("assumed", 0, content["paper_power_mean_W"], content["paper_power_interval_W"], 2),
+        ("assumed", 1, ratio["paper_power_ratio"], ratio["paper_power_ratio_interval"], 2),
+        ("rider", 0, content["rider_power_mean_W"], content["rider_power_interval_W"], 1),
+        ("rider", 1, ratio["rider_power_ratio"], ratio["rider_power_ratio_interval"], 2),
+        ("rider", 2, content["rider_power_per_trt"], content["rider_power_per_trt_interval"], 2),
     ):
-        assert rows[row] == typeset(f"{value:.{digits}f} ({low:.{digits}f} to {high:.{digits}f})")
+        assert shown["both"][row][column] == [f"{value:.{digits}f}", f"{low:.{digits}f} to {high:.{digits}f}"]
+    assert shown["rider"] == "{} ({})".format(*shown["both"]["rider"][0])
 
 
 def test_curve_and_windows_are_those_of_static(capsys: pytest.CaptureFixture[str]) -> None:
@@ -42,7 +40,11 @@ def test_why_there_is_no_rider() -> None:
     stuck = D1.with_linkage(crank=0.25)
     assert "cannot close" in numbers(stuck, D1, P1P3)["why"]
     assert "cannot close" in by_muscles(stuck, P1P3)["why"]
-    assert [row["name"] for row in numbers(D1, stuck, P1P3)["numbers"]] == ["assumed", "rider", "rider_per_trt"]
+    both = numbers(D1, stuck, P1P3)["both"]
+    assert {name: [cell is not None for cell in cells] for name, cells in both.items()} == {
+        "assumed": [True, False, False],
+        "rider": [True, False, True],
+    }
     own = fes_mj.load_moments("examples/trial/trial.toml")
     assert numbers(D1, D1, own)["why"] == "no muscles belong to these moments"
     assert by_muscles(D1, own) == {"why": f"no muscles of {own.name} are known, only of p1p2 and p1p3"}

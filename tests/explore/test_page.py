@@ -232,7 +232,9 @@ def test_both_numbers_whatever_drives(page: Page, capsys: pytest.CaptureFixture[
     page.until(lambda: f"as the paper assumes; for a rider {rider} W" in page.page.inner_text("#against"))
     page.choose("#drive", "muscles")
     page.until(lambda: page.page.inner_text("#power") == f"{rider} W")
-    assert page.number("rider") == rider
+    cells = page.page.locator("#both tr[data-name=rider] td").all_inner_texts()
+    assert "{} ({})".format(*cells[0].split("\n")) == rider
+    assert cells[1].split("\n") == ["1.00", "1.00 to 1.00"]  # it is compared with itself
     assert page.page.inner_text("#against") == f"for a rider; as the paper assumes {page.number('power')} W"
     assert page.number("hamstrings") == "{:.0f} to {:.0f}".format(*result["windows_deg"]["hamstrings"])
     assert page.page.locator("[data-curve='p1p2 muscles']").count() == 1

@@ -212,8 +212,9 @@ function showNumbers() {
   const broken = $("limits").checked && !turn.failing ? turn.broken : [];
   const marks = new Set(turn.failing ? [state.touched] : broken.flatMap((limit) => limit.marks));
   $("title").textContent = state.design.name;
-  const { windows = [], numbers = [], why } = state.numbers ?? {};
-  $("numbers").replaceChildren(...[...windows, ...numbers, ...(own?.numbers ?? []), ...(turn.numbers ?? [])].map(({ name, words, text, unit }) => {
+  const { windows = [], why } = state.numbers ?? {};
+  showBoth(Boolean(own));
+  $("numbers").replaceChildren(...[...windows, ...(own?.numbers ?? []), ...(turn.numbers ?? [])].map(({ name, words, text, unit }) => {
     const row = document.createElement("tr");
     row.dataset.name = name;
     row.classList.toggle("outside", marks.has(name));
@@ -224,6 +225,21 @@ function showNumbers() {
   sliders.mark(marks);
   $("note").textContent = [own?.note && `Note: ${own.note}.`, why && `For a rider: ${why}.`].filter(Boolean).join(" ");
   headline(own, other);
+}
+
+// Both powers with the intervals in which nine of ten draws of what is not known lie.
+function showBoth(turns) {
+  const waiting = turns && !state.numbers;
+  for (const row of document.querySelectorAll("#both [data-name]")) {
+    const cells = state.numbers?.both?.[row.dataset.name] ?? Array(3).fill(waiting ? ["…", ""] : null);
+    row.replaceChildren(row.firstElementChild, ...cells.map((cell) => {
+      const made = document.createElement("td"), value = document.createElement("b");
+      const [text, interval] = cell ?? ["–", ""];
+      value.textContent = text;
+      made.append(value, interval);
+      return made;
+    }));
+  }
 }
 
 // Both powers of one leg, first that of what drives; and the design it is compared with, as the paper assumes.
