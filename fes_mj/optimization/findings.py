@@ -114,8 +114,8 @@ class Findings:
         return results
 
     def remove(self) -> None:
-        """Remove the folder, as all is finished."""
-        for pattern in ("recipe.json", "best*", "search-*.json", ".*"):
+        """Remove the folder, as all is finished; the recipe last: after a kill in here the same command goes on."""
+        for pattern in ("search-*.json", "best*", ".*", "recipe.json"):
             for path in self.folder.glob(pattern):
                 path.unlink(missing_ok=True)
         if not any(self.folder.iterdir()):

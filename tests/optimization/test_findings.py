@@ -114,6 +114,35 @@ def test_a_damaged_record_is_named(text: str, tmp_path: Path) -> None:
         findings.searching(problem_of("d1")).__enter__()
 
 
+@pytest.mark.parametrize("survives", [0, 1, 2])
+def test_a_kill_while_the_folder_is_removed_stops_nobody(
+    survives: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whatever is left by then, the same command goes on, and no other takes it for its own."""
+    findings, problem = findings_at(tmp_path / "best.toml"), problem_of("d1")
+    x = problem.variables(problem.template)
+    with findings.searching(problem):
+        findings.finish(0, Result(x, 5.0, 10, np.array([5.0])))
+    unlink, removed = Path.unlink, []
+
+    def killed(path: Path, missing_ok: bool = False) -> None:
+        if len(removed) == survives:
+            raise KeyboardInterrupt
+        removed.append(path)
+        unlink(path)
+
+    monkeypatch.setattr(Path, "unlink", killed)
+    with pytest.raises(KeyboardInterrupt):
+        findings.remove()
+    monkeypatch.undo()
+    again = findings_at(tmp_path / "best.toml")
+    with again.searching(problem):
+        assert len(again.finished()) == (survives == 0)
+        again.improve(0, x, 5.0)
+    again.remove()
+    assert [*contents(tmp_path)] == ["best.toml"]
+
+
 def test_a_folder_of_somebody_else_is_left_alone(tmp_path: Path) -> None:
     findings = findings_at(tmp_path / "best.toml")
     findings.folder.mkdir()
