@@ -49,7 +49,8 @@ class Fault(NamedTuple):
         """Whether the mistake can be made in this case, and be noticed."""
         edited = self.edit is None or (case.file is not None and self.edit(case.design) != case.design)
         driven = self.drive in ("", "moments" if isinstance(case.drive, JointMoments) else "muscles")
-        return case.design.linkage.kind in self.kinds and edited and driven
+        ridden = not self.ride_steps or bool(case.rides)
+        return case.design.linkage.kind in self.kinds and edited and driven and ridden
 
     @property
     def groups(self) -> tuple[CheckGroup, ...]:

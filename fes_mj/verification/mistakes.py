@@ -30,11 +30,12 @@ from fes_mj.riding.trace import Trace, ride as ride_by_equation
 from fes_mj.simulation.bench import PLAIN, BenchOptions
 from fes_mj.simulation.mjcf import SERVO, SERVO_GAIN
 from fes_mj.simulation.road import RoadRun
+from fes_mj.simulation.road_control import RoadControl
 from fes_mj.simulation.road_mjcf import DRIVETRAIN, ROAD
 from fes_mj.simulation.time_step import steps_per_turn
 from fes_mj.statics.equilibrium import equilibrium, joint_couples, moment_arm
 from fes_mj.verification.faults import Fault, Steps, in_model
-from fes_mj.verification.muscle_mistakes import MUSCLE_STEPS
+from fes_mj.verification.muscle_mistakes import MUSCLE_STEPS, exchanged
 
 _FILE = DATA / "faults.toml"
 
@@ -167,6 +168,16 @@ def slope_reversed(case: RideCase) -> Trace:
     return ride_by_equation(replace(case.ride, road=replace(case.ride.road, slope=-case.ride.road.slope)))
 
 
+def in_control(change: Callable[[RoadControl], dict[str, Any]]) -> Steps:
+    """What a ride's muscles and freewheel do, in MuJoCo, with some of it changed."""
+    return in_result(RideCase.control, lambda control: control._replace(**change(control)))
+
+
+def without_ramp(control: RoadControl) -> dict[str, Any]:
+    stimulator = control.stimulator
+    return {"stimulator": stimulator._replace(stimulus=stimulator.stimulus._replace(ramp=1e-9))}
+
+
 class RollingUnsigned(RoadRun):
     def resistance(self, speed: FloatArray) -> FloatArray:
         load = self.ride.load
@@ -231,16 +242,23 @@ STEPS: dict[str, Steps] = {
 # Step of a RideCase -> what takes its place, by the name of the fault in data/faults.toml.
 RIDE_STEPS: dict[str, Steps] = {
     "freewheel_reversed": in_model("tendons", DRIVETRAIN, range=lambda limits: np.array([-limits[1], limits[0]]))
-    | in_result(RideCase.control, lambda control: control._replace(fixed=True)),
+    | in_control(lambda _: {"fixed": True}),
     "rims_once": in_model("joints", ROAD, armature=0.0),
     "slope_reversed": {"reference": cached_property(slope_reversed)},
     "air_twice": in_model("joints", ROAD, damping=lambda damping: 2 * np.asarray(damping)),
-    "left_leg_unshifted": in_result(RideCase.control, lambda control: control._replace(leg_lag=0 * control.leg_lag)),
-    "moments_late": in_result(
-        RideCase.control, lambda control: control._replace(leg_lag=control.leg_lag + math.radians(10))
-    ),
+    "left_leg_unshifted": in_control(lambda control: {"leg_lag": 0 * control.leg_lag}),
+    "moments_late": in_control(lambda control: {"leg_lag": control.leg_lag + math.radians(10)}),
     "one_leg_counted": {"record": type("OneLegCounted", (RoadRun,), {"legs": TWO_LEGS[:1]})},
     "rolling_unsigned": {"record": RollingUnsigned},
+    "stimulation_not_led": in_control(lambda control: {"stimulator": control.stimulator._replace(lag=0.0, rise=0.0)}),
+    "ride_fall_for_rise": in_control(lambda control: {"rising": control.falling}),
+    "ride_ramp_forgotten": in_control(without_ramp),
+    "ride_lengthening_for_shortening": in_control(
+        lambda control: {"muscles": control.muscles._replace(max_speed=-control.muscles.max_speed)}
+    ),
+    "ride_groups_exchanged": in_control(
+        lambda control: {"muscles": control.muscles._replace(group=np.array(exchanged(control.muscles)["group"]))}
+    ),
 }
 # Edits of the design where its file is read.
 EDITS: dict[str, Callable[[Design], Design]] = {

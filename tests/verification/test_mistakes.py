@@ -1,16 +1,18 @@
 """The catalogue of injected mistakes is complete."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from fes_mj.common.checks import definitions
 from fes_mj.common.reading import read_toml
+from fes_mj.verification.case import VerificationCase
 from fes_mj.verification.faults import inject
 from fes_mj.verification.mistakes import EDITS, RIDE_STEPS, STEPS, faults
 from fes_mj.verification.muscle_mistakes import MUSCLE_STEPS
 from fes_mj.verification.suite import ride_checks
-from tests.verification.conftest import case_of
+from tests.verification.conftest import case_of, muscle_case_of
 
 ROOT = Path(__file__).parents[2]
 
@@ -44,12 +46,13 @@ RIDE_FAULTS = [fault for fault in faults() if fault.ride_steps]
         str(ROOT / "results" / "optimization" / "r2-caution-1.toml"),
     ],
 )
-def test_the_guard_of_a_ride_notices_by_far(source: str) -> None:
-    case = case_of(source)
+@pytest.mark.parametrize("made", [case_of, muscle_case_of], ids=["moments", "muscles"])
+def test_the_guard_of_a_ride_notices_by_far(made: Callable[[str], VerificationCase], source: str) -> None:
+    case = made(source)
     checks = [*ride_checks(case)]
     assert [check for check in checks if not check.ok] == []
     baseline = {check.name: True for check in checks}
-    for fault in RIDE_FAULTS:
+    for fault in [fault for fault in RIDE_FAULTS if fault.applies(case)]:
         failed = inject(fault, case, baseline).failed
         for guard in fault.guards:
             assert max(check.factor for check in failed if check.name == guard) >= CLEARLY, fault.name
