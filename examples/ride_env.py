@@ -14,24 +14,29 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from fes_mj import load_design, load_moments
-from fes_mj.moments.torque_map import torque_map
-from fes_mj.riding.stimulation import MUSCLES, Window, stimulation
+from fes_mj import load_design, load_moments, load_muscles, stimulated_rider
+from fes_mj.linkage.joints import JOINTS
+from fes_mj.linkage.legs import TWO_LEGS
+from fes_mj.muscles.anatomy import GROUPS
+from fes_mj.muscles.instant import LegMuscles, joint_moments, stimulation
+from fes_mj.muscles.stepping import MuscleStepper, steady
+from fes_mj.riding.stimulated import lead
+from fes_mj.simulation.stepping import drive_addresses
 from fes_mj.simulation.variants import variant_model, variant_options
 
-CHANNELS = [(leg, name) for leg in ("right", "left") for name in MUSCLES]  # of the stimulator
 PERIOD = 0.02  # s between two actions: a stimulator's 50 Hz
+TICK = PERIOD / 10  # s between two answers of the muscles
 EFFORT = 0.5  # m/s that full effort of all muscles costs
 STOPPED = 0.1  # m/s
+REST = (0.0,) * len(GROUPS)
 
 
 class RideEnv(gymnasium.Env[NDArray[np.float64], NDArray[Any]]):
     """Ride a flat road for some seconds, launched at 5.71 km/h give or take a fifth.
 
     Actions, held for PERIOD:
-      "stimulation": MultiBinary(6), in the order of CHANNELS: quadriceps, hamstrings and gluteus of the right leg, then
-        of the left. An activation follows each with a time constant `lag` (s); the moment is the activation times the
-        largest that the group's recovered moments show.
+      "stimulation": MultiBinary(6): quadriceps, hamstrings and gluteus of the right leg, then of the left. Muscles of
+        the group's most probable rider answer, as in `fes_mj ride`: late, and by length and speed of their fibres.
       "moments": Box(4) within -1 and 1, of the motors' ranges in N m: hip and knee of the right leg, then of the left;
         extension is positive.
 
@@ -56,30 +61,27 @@ class RideEnv(gymnasium.Env[NDArray[np.float64], NDArray[Any]]):
         group: str = "p1p2",
         actions: Literal["stimulation", "moments"] = "stimulation",
         variants: tuple[str, ...] = ("ride",),
-        lag: float = 0.1,
         duration: float = 20.0,
     ) -> None:
         self.design, moments = load_design(design), load_moments(group)
         spec = variant_model(self.design, moments, self.design.linkage.cadence, variant_options(variants))
         self.model = spec.compile()
         self.data = mujoco.MjData(self.model)
-        self.lag, self.duration, self.stimulated = lag, duration, actions == "stimulation"
-        table = torque_map(moments).table
-        self.strength = [
-            float((muscle.sense * table[muscle.joint]).max()) for muscle in (MUSCLES[n] for _, n in CHANNELS)
-        ]
-        self.steps = round(PERIOD / self.model.opt.timestep)
+        self.duration, self.stimulated = duration, actions == "stimulation"
+        self.rider = stimulated_rider(load_muscles(group), self.design)
+        self.muscles = LegMuscles.of(self.rider.riders, self.design.rider).in_lists
+        self.joints = [[drive_addresses(self.model, leg.prefix + joint) for joint in JOINTS] for leg in TWO_LEGS]
+        self.steps = round(TICK / self.model.opt.timestep)
         self.crank, self.road = self.data.joint("crank"), self.data.joint("road")
         self.tendon = self.model.tendon("drivetrain").id
         self.freewheel = bool(self.model.tendon_limited[self.tendon])
         self.limit = float(self.model.tendon_range[self.tendon, 0])
-        self.activation, self.effort = np.zeros(len(CHANNELS)), 0.0
-        active = len(CHANNELS) * self.stimulated
-        largest = np.array([1, 1, 200, 50, *[1] * active], float)  # no crank and no rider is faster
+        active = len(TWO_LEGS) * len(GROUPS)
+        largest = np.array([1, 1, 200, 50, *[1] * active * self.stimulated], float)  # no crank and no rider is faster
         self.bounds = np.where(np.arange(len(largest)) < 4, -largest, 0.0), largest
         self.observation_space = gymnasium.spaces.Box(*self.bounds, dtype=np.float64)
         self.action_space = (
-            gymnasium.spaces.MultiBinary(len(CHANNELS))
+            gymnasium.spaces.MultiBinary(active)
             if self.stimulated
             else gymnasium.spaces.Box(-1.0, 1.0, (self.model.nu,), np.float32)
         )
@@ -91,33 +93,40 @@ class RideEnv(gymnasium.Env[NDArray[np.float64], NDArray[Any]]):
         mujoco.mj_resetDataKeyframe(self.model, self.data, 0)
         self.data.qvel *= self.np_random.uniform(0.8, 1.2)  # one degree of freedom: all speeds together
         self.model.tendon_range[self.tendon, 0] = self.limit
-        self.activation[:], self.effort = 0.0, 0.0
+        self.effort, rest = 0.0, steady(self.muscles, TICK, [REST], REST)
+        self.legs = [MuscleStepper(self.muscles, TICK, rest) for _ in TWO_LEGS]
         return self._observation(), self._info()
 
     def step(self, action: NDArray[Any]) -> tuple[NDArray[np.float64], float, bool, bool, dict[str, Any]]:
-        before, effort = float(self.road.qpos[0]), self._drive(np.asarray(action))
-        for _ in range(self.steps):
+        before, asked = float(self.road.qpos[0]), np.asarray(action)
+        if not self.stimulated:
+            self.data.ctrl[:] = np.clip(asked, -1, 1) * self.model.actuator_ctrlrange[:, 1]
+        for step in range(round(PERIOD / TICK) * self.steps):
+            if self.stimulated and not step % self.steps:
+                self._pull(asked)
             mujoco.mj_step(self.model, self.data)
             if self.freewheel:  # it has no memory: the wheel is where it has come to
                 limit, length = self.model.tendon_range[self.tendon], self.data.ten_length[self.tendon]
                 limit[0] = max(limit[0], length)
+        effort = float(np.mean(self.activation) if self.stimulated else np.mean(np.square(np.clip(asked, -1, 1))))
         self.effort += PERIOD * effort
         reward = float(self.road.qpos[0]) - before - EFFORT * PERIOD * effort
         stopped = bool(self.road.qvel[0] < STOPPED)
         return self._observation(), reward, stopped, self.data.time >= self.duration - PERIOD / 2, self._info()
 
-    def _drive(self, action: NDArray[Any]) -> float:
-        """Set the motors for an action; its effort, 0 to 1."""
-        if not self.stimulated:
-            self.data.ctrl[:] = np.clip(action, -1, 1) * self.model.actuator_ctrlrange[:, 1]
-            return float(np.mean(np.square(np.clip(action, -1, 1))))
-        kept = math.exp(-PERIOD / self.lag) if self.lag else 0.0
-        self.activation = action + kept * (self.activation - action)
-        self.data.ctrl[:] = 0.0
-        for (leg, name), active, strength in zip(CHANNELS, self.activation, self.strength, strict=True):
-            joint, sense = MUSCLES[name]
-            self.data.actuator(f"{leg}_{joint}").ctrl += sense * active * strength
-        return float(self.activation.mean())
+    @property
+    def activation(self) -> list[float]:
+        return [active for leg in self.legs for active in leg.activation]
+
+    def _pull(self, asked: NDArray[Any]) -> None:
+        """Let the muscles of both legs go on by a TICK, and pull."""
+        angle, rate = self.data.qpos, self.data.qvel
+        for leg, own, ((_, *knee), (_, *hip)) in zip(
+            self.legs, asked.reshape(2, -1).tolist(), self.joints, strict=True
+        ):
+            state = (float(values[joint[row]]) for row, values in enumerate((angle, rate)) for joint in (knee, hip))
+            moments = joint_moments(self.muscles, leg.advance(own), *state)
+            self.data.qfrc_applied[[knee[1], hip[1]]] = moments
 
     def _observation(self) -> NDArray[np.float64]:
         angle = float(self.crank.qpos[0])
@@ -136,19 +145,16 @@ Policy = Callable[[NDArray[np.float64]], NDArray[Any]]
 
 
 def table_policy(env: RideEnv) -> Policy:
-    """Stimulate each group in its core window, advanced by what the crank turns in the lag."""
-    windows: dict[tuple[str, str], list[Window]] = {channel: [] for channel in CHANNELS}
-    for window in stimulation(env.design):
-        windows[window.leg, window.muscle].append(window)
+    """Stimulate each group in its best window, led for the speed as in `fes_mj ride`, and by the muscles' delay."""
+    stimulator = env.rider.stimulator
 
     def policy(observation: NDArray[np.float64]) -> NDArray[Any]:
         cosine, sine, speed = observation[:3]
-        ahead = math.atan2(sine, cosine) + env.lag * max(speed, 0.0)
-        on = [
-            any((ahead - window.core[0]) % (2 * math.pi) < window.core_width for window in windows[channel])
-            for channel in CHANNELS
+        felt = math.atan2(sine, cosine) + lead(stimulator, speed) + speed * (env.muscles.delay + PERIOD / 2)
+        asked = [
+            stimulation(stimulator.stimulus, group, felt - leg.lag) for leg in TWO_LEGS for group in range(len(GROUPS))
         ]
-        return np.array(on, np.int8)
+        return np.array(np.round(asked), np.int8)
 
     return policy
 

@@ -92,10 +92,10 @@ COLUMNS = {
 }
 HEADING = f"""# Baselines of the ride environment
 
-Written by `python -m studies.ride_env`: examples/ride_env.py with its defaults (flat road, moments of group p1p2,
-muscles that lag by 0.1 s), means of {EPISODES} episodes. *table*: each muscle group in its core
-window (`fes_mj stimulation --drive moments`) advanced for the actual speed; *random*: each group on or off by chance at
-50 Hz. An episode ends when the tricycle stops. *sd*: of the return, over episodes.
+Written by `python -m studies.ride_env`: examples/ride_env.py with its defaults (flat road, muscles of the most probable
+rider of group p1p2), means of {EPISODES} episodes. *table*: each muscle group in its best window
+(`fes_mj stimulation`), led for the actual speed; *random*: each group on or off by chance at 50 Hz.
+An episode ends when the tricycle stops. *sd*: of the return, over episodes.
 
 """
 

@@ -12,6 +12,8 @@ import pytest
 from fes_mj import load_design, load_moments
 from fes_mj.cli.app import run
 from fes_mj.linkage.design_file import DESIGNS
+from fes_mj.riding.ride import Ride
+from fes_mj.riding.trace import ride
 from fes_mj.statics.turn import quasi_static
 
 ROOT = Path(__file__).parents[1]
@@ -75,20 +77,33 @@ def test_ride_env_rewards_the_table(ride_env: dict[str, Any]) -> None:
 
 
 def test_ride_env_does_what_its_documentation_says(ride_env: dict[str, Any]) -> None:
-    """It rolls to a stop without stimulation; activations follow with their lag; a moment is its share of the range."""
+    """It rolls to a stop without stimulation; activations rise late; a moment is its share of the range."""
     env = ride_env["RideEnv"]("trt", duration=100.0)
     episode = ride_env["roll_out"](env, lambda _: np.zeros(6, np.int8))
     assert episode["time"][-1] < 100
     assert episode["speed"][-1] < ride_env["STOPPED"]
     assert episode["effort"][-1] == 0
     env.reset(seed=0)
-    for step in range(1, 4):
+    for step in range(1, 9):
         observation, *_ = env.step(np.ones(6, np.int8))
-        assert observation[4:] == pytest.approx(1 - np.exp(-step * ride_env["PERIOD"] / env.lag))
+        late = max(0.0, step * ride_env["PERIOD"] - env.muscles.delay)
+        within = ride_env["TICK"] / env.muscles.rise
+        assert observation[4:] == pytest.approx(1 - np.exp(-late / env.muscles.rise), abs=within)
     direct = ride_env["RideEnv"]("trt", actions="moments")
     direct.reset(seed=0)
     direct.step(np.array([0.5, -1.0, 0.0, 1.0], np.float32))
     assert direct.data.ctrl == pytest.approx([0.5, -1, 0, 1] * direct.model.actuator_ctrlrange[:, 1])
+
+
+@pytest.mark.long
+def test_ride_env_rides_as_fast_as_the_equation_of_motion(ride_env: dict[str, Any]) -> None:
+    """Though its stimulator switches 50 times a second."""
+    env = ride_env["RideEnv"]("trt", variants=("ride", "fixed-gear"))
+    distance = ride_env["roll_out"](env, ride_env["table_policy"](env))["distance"]
+    expected = ride(Ride(env.design, env.rider, duration=env.duration, transmission="fixed"))
+    over = 3.0  # s, some turns
+    ridden = expected.distance[-1] - np.interp(env.duration - over, expected.time, expected.distance)
+    assert distance[-1] - distance[-1 - round(over / ride_env["PERIOD"])] == pytest.approx(ridden, rel=0.02)
 
 
 @pytest.mark.long
