@@ -154,14 +154,20 @@ class LoadOptions(MomentsOptions):
 
 @Parameter(name="*")
 @dataclass
-class RunOptions(PrintOptions, LoadOptions):
-    """Options of every command that runs a design.
+class VerboseOptions(PrintOptions):
+    """What is printed, and how much.
 
     Args:
-        verbose: Print more: energies, joint forces, the whole error budget.
+        verbose: Print more: every check, energies, joint forces, the whole error budget.
     """
 
     verbose: Annotated[bool, Parameter(alias="-v", negative="")] = False
+
+
+@Parameter(name="*")
+@dataclass
+class RunOptions(VerboseOptions, LoadOptions):
+    """Options of every command that runs a design."""
 
 
 _BEARINGS = Group("Bearings", validator=all_or_none)

@@ -12,7 +12,7 @@ from cyclopts.validators import Number, mutually_exclusive
 
 import fes_mj
 from fes_mj.cli.drive import MusclesFirst
-from fes_mj.cli.options import DesignName, Dims, Flag, MomentsOptions, Out, PrintOptions
+from fes_mj.cli.options import DesignName, Dims, Flag, MomentsOptions, Out, VerboseOptions
 from fes_mj.cli.tables import beside, conclude_checks, or_dash, print_checks, what_moves
 from fes_mj.common.console import print_table, say
 from fes_mj.common.errors import require_extra
@@ -35,7 +35,7 @@ NO_FALL = "Joint moments do not fall with speed, as muscles do: how fast it gets
 
 @Parameter(name="*")
 @dataclass
-class RideOptions(PrintOptions, MomentsOptions):
+class RideOptions(VerboseOptions, MomentsOptions):
     """A ride.
 
     Args:
@@ -110,7 +110,7 @@ def ride(
     content = case.summary() | (result.summary() if result else {})
     if paths:
         write_results(dict(zip(paths.values(), _texts(case, result, json_text(content)), strict=True)))
-    options.show(lambda: content, lambda: _print(case, result))
+    options.show(lambda: content, lambda: _print(case, result, options.verbose))
     if render:
         from fes_mj.viewing.render import render_video
 
@@ -132,17 +132,19 @@ def _texts(case: fes_mj.RideCase, starts: Starts | None, result: str) -> list[st
     return texts
 
 
-def _print(case: fes_mj.RideCase, starts: Starts | None) -> None:
+def _print(case: fes_mj.RideCase, starts: Starts | None, verbose: bool) -> None:
     ride, run = case.ride, case.simulation.trace
     if isinstance(ride.drive, JointMoments):
         say(NO_FALL)
     if case.agrees:
         road = f"{ride.transmission}{' gear' if ride.fixed else ''}, {100 * ride.road.slope:g} % slope"
-        title = f"{what_moves(ride.design, ride.drive.name)}; {road}"
+        rider = "" if isinstance(ride.drive, JointMoments) else f", timing {ride.drive.timing}, the most probable rider"
+        title = f"{what_moves(ride.design, ride.drive.name)}{rider}; {road}"
         error = case.uncertainty
         rows = beside(_rows(run, error["mujoco"]), _rows(case.reference, error["reduced"]))
-        print_table(title, ("", "MuJoCo", "reduced model"), rows)
-    print_checks("Checks", case.checks)
+        print_table(title, ("", "MuJoCo", "reduced model"), [row for row in rows if set(row[1:]) != {"-"}])
+    if verbose or not case.agrees:
+        print_checks("Checks", case.checks)
     if starts:
         rows = [
             ("starts from rest at, % of crank angles", f"{100 * starts.share:.0f}"),
