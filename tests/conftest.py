@@ -49,9 +49,9 @@ def design(request: pytest.FixtureRequest) -> fes_mj.Design:
     return fes_mj.load_design(request.param)
 
 
-@pytest.fixture(params=GROUPS)
+@pytest.fixture(params=[pytest.param(group, marks=() if group == GROUPS[0] else pytest.mark.long) for group in GROUPS])
 def moments(request: pytest.FixtureRequest) -> fes_mj.JointMoments:
-    """The recovered moments of each group in turn."""
+    """The recovered moments of each group in turn, of the second one in the long tests."""
     return fes_mj.load_moments(request.param)
 
 

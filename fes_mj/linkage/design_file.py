@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import fields, replace
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -30,6 +31,15 @@ def load_design(source: str | Path, dims: str = "identified") -> Design:
     ('cdt', 0.160788)
     """
     path = design_path(source, dims)
+    return _catalogued(path) if source in DESIGNS else _read(path)
+
+
+@cache
+def _catalogued(path: Path) -> Design:
+    return _read(path)
+
+
+def _read(path: Path) -> Design:
     return read_design(read_toml(path, "design file"), printable(path.stem))
 
 

@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -31,12 +32,17 @@ def load_moments(source: str | Path = "p1p2", left: str | Path | None = None) ->
     if left is not None:
         return replace(load_moments(source), left=load_moments(left))
     if source in GROUPS:
-        path = _FOLDER / f"{source}.csv"
-        angle, knee, hip = np.loadtxt(path, delimiter=",", skiprows=1, unpack=True)
-        return JointMoments(path.stem, np.radians(angle), knee, hip, covariance=np.load(path.with_suffix(".npy")))
+        return _of_group(str(source))
     from fes_mj.moments.measurement import load_measurement  # much to read of which a rider group needs nothing
 
     return load_measurement(Path(source)).moments
+
+
+@cache  # with the curves and tables that are made of them
+def _of_group(name: str) -> JointMoments:
+    path = _FOLDER / f"{name}.csv"
+    angle, knee, hip = np.loadtxt(path, delimiter=",", skiprows=1, unpack=True)
+    return JointMoments(name, np.radians(angle), knee, hip, covariance=np.load(path.with_suffix(".npy")))
 
 
 def measurement_toml(moments: JointMoments, data: Path) -> str:
