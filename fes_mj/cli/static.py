@@ -11,7 +11,6 @@ from fes_mj.cli.answers import Turns, answered, print_answer
 from fes_mj.cli.drive import DriveOptions
 from fes_mj.cli.options import BearingOptions, DesignName, Flag, RunOptions
 from fes_mj.common.console import print_table, say
-from fes_mj.common.provenance import provenance
 from fes_mj.common.units import RPM
 from fes_mj.linkage.design_file import design_path, design_toml
 from fes_mj.linkage.turning import CRANK_ZERO, FROM_TOP, turning
@@ -66,15 +65,22 @@ def static(
         return Answered(result, answered(drive, options, result), loss)
 
     designs = [solved(name) for name in (design, *others)]
-    source = provenance([design_path(name, options.dims) for name in (design, *others)] + options.inputs())
+
+    def source() -> dict[str, Any]:
+        from fes_mj.common.provenance import provenance
+
+        return {
+            "provenance": provenance([design_path(name, options.dims) for name in (design, *others)] + options.inputs())
+        }
+
     if others:
         options.show(
-            lambda: _comparison(designs, curves) | {"provenance": source},
+            lambda: _comparison(designs, curves) | source(),
             lambda: _print_comparison(designs, options.verbose),
         )
     else:
         options.show(
-            lambda: _content(designs[0], curves) | {"provenance": source},
+            lambda: _content(designs[0], curves) | source(),
             lambda: _print(designs[0], curves, options.verbose),
         )
 
