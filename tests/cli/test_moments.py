@@ -85,7 +85,15 @@ def test_what_is_written_gives_the_same_power(capsys: pytest.CaptureFixture[str]
     assert again["power_mean_W"] == pytest.approx(original["power_mean_W"], rel=1e-6)
 
 
-@pytest.mark.parametrize("command", [("static",), ("simulate",), ("moments",), ("optimize", "--budget", "1000")])
+@pytest.mark.parametrize(
+    "command",
+    [
+        ("static",),
+        ("simulate",),
+        ("moments",),
+        ("optimize", "--budget", "1000", "--searches", "1", "--limits", "paper"),
+    ],
+)
 def test_every_command_repeats_the_warnings(
     command: tuple[str, ...], capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
