@@ -8,6 +8,7 @@ from fes_mj.crosscheck.turn_case import Case
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.joints import PerJoint
 from fes_mj.optimization.buildable import COMMON, Buildability
+from fes_mj.statics.turn import DrivenTurn
 
 if TYPE_CHECKING:
     from fes_mj.optimization.optimize import Optimum
@@ -15,11 +16,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Assessed:
-    """A design that was found. case: simulated and cross-checked. joint_speed: mean absolute, deg/s."""
+    """A design that was found. case: simulated and cross-checked. joint_speed: mean absolute, deg/s.
+
+    compared_with: the turn of the design that it had to beat.
+    """
 
     case: Case
     joint_speed: PerJoint[float]
     build: Buildability
+    compared_with: DrivenTurn
 
     @property
     def design(self) -> Design:
@@ -70,6 +75,7 @@ class Assessed:
             "relative_difference": case.relative_difference,
             "timestep_s": case.simulation.timestep,
             "agrees": case.agrees,
+            "compared_with": self.compared_with.design.name,
             "design_space": optimum.problem.limits.space,
             **asdict(self.build),
             "doubts": self.doubts(optimum),

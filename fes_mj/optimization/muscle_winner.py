@@ -26,8 +26,8 @@ class MuscleWinner(Assessed):
     case: of the most probable rider.
     """
 
-    turn: MuscleStatic
     compared_with: MuscleStatic
+    turn: MuscleStatic
 
     @classmethod
     def of(cls, design: Design, other: Design, drive: MuscleDrive) -> "MuscleWinner":
@@ -39,7 +39,7 @@ class MuscleWinner(Assessed):
         turn, muscles = solved(design), Muscles(drive.riders, BEST, drive.duty)
         per_s = 360 * turns_per_second(turn.cadence)
         speeds = turn.motion.joint_rate.map(lambda rate: per_s * float(np.abs(rate).mean()))
-        return cls(Case(design, muscles), speeds, Buildability.of(turn), turn, solved(other))
+        return cls(Case(design, muscles), speeds, Buildability.of(turn), solved(other), turn)
 
     @property
     def gain(self) -> tuple[float, float, float]:
@@ -77,7 +77,6 @@ class MuscleWinner(Assessed):
         return super().summary(optimum) | {
             **{key: turn[key] for key in keys},
             "riders_searched": min(SEARCHED, len(self.turn.stimulated.riders)),
-            "compared_with": self.compared_with.design.name,
             "gain_W": mean,
             "gain_deviation_W": deviation,
             "gain_share": share,

@@ -1,18 +1,17 @@
 """A page on one found design: numbers, motion, power, constraints, front; HTML with everything inside."""
 
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 
 from fes_mj.common.arrays import FloatArray
 from fes_mj.common.style import COLOURS, INK, MOMENTS, SERIES
 from fes_mj.linkage.design_file import design_toml
-from fes_mj.moments.joint_moments import GROUPS, JointMoments
+from fes_mj.moments.joint_moments import GROUPS
 from fes_mj.optimization.optimize import Optimum
 from fes_mj.optimization.pareto import FLUCTUATION, Front
 from fes_mj.optimization.winner import Winner
-from fes_mj.statics.turn import quasi_static
 from fes_mj.viewing.pages import page
 
 POSE = np.radians(200.0)  # crank angle at which leg and linkage are spread out
@@ -49,9 +48,8 @@ def _figures(winner: Winner) -> list[str]:
         draw_linkage(linkage, winner.design, POSE)
         curves, (power,) = page_axes()
         plot_power(power, winner.case, ("mujoco", "quasi-static"))
-        other = quasi_static(winner.compared_with, cast("JointMoments", winner.case.drive))
-        label = f"{winner.compared_with.name}, quasi-static"
-        curve = over_turn(other.crank_angle, other.power)
+        other = winner.compared_with
+        curve, label = over_turn(other.crank_angle, other.power), f"{other.design.name}, quasi-static"
         power.plot(*curve, "--", color=COLOURS["comparison"], lw=1, label=label)
         return [page_svg(drawing, linkage), page_svg(curves, power)]
 

@@ -87,7 +87,6 @@ class Winner(Assessed):
     same moments, None for moments without error bars.
     """
 
-    compared_with: Design
     reversals: PerJoint[int]
     ripple: float
     gain: Gain | None
@@ -132,7 +131,7 @@ class Winner(Assessed):
             *self.build.rows,
         ]
         if self.gain:
-            cells.append((f"gain over {self.compared_with.name}, W", "{:+.2f} ± {:.2f}".format(*self.gain)))
+            cells.append((f"gain over {self.compared_with.design.name}, W", "{:+.2f} ± {:.2f}".format(*self.gain)))
         for name, tolerance in (("lengths ±1 mm", self.manufacturing), ("thigh, shank ±5 cm", self.rider)):
             cells.append((f"{name}: can turn", f"{100 * tolerance.turning:.1f} %"))
             cells.append((f"{name}: 5th percentile of power, W", f"{tolerance.power_low:.2f}"))
@@ -143,7 +142,6 @@ class Winner(Assessed):
         content = super().summary(optimum) | {
             "reversals_per_turn": dict(self.reversals.items()),
             **self.smoothness,
-            "compared_with": self.compared_with.name,
             "gain_W": self.gain.mean if self.gain else None,
             "gain_deviation_W": self.gain.deviation if self.gain else None,
             "tolerance_manufacturing": self.manufacturing._asdict(),
@@ -159,7 +157,7 @@ def assess(design: Design, compared_with: Design, moments: JointMoments, seed: i
     deviation = difference_sd(own, other)
     return Winner(
         case=Case(design, moments),
-        compared_with=compared_with,
+        compared_with=other,
         joint_speed=joint_speeds(design, table),
         reversals=cycles(design, table).joints.map(lambda joint: int(joint.reversals[0])),
         ripple=steady_ripple(Ride(design, moments, transmission="fixed")),
