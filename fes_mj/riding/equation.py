@@ -24,11 +24,11 @@ from fes_mj.riding.ride import Load, Ride
 from fes_mj.riding.stimulated import NO_STIMULATOR, StimulatedRider, Stimulator, lead
 
 TOUCH = 1e-12  # m/s: rounding, by which a crank that has just caught up may be too fast or too slow
-LONGEST, LONGEST_FREE = 0.016, math.radians(1.0)  # s, of a step: where the crank is slow; rad: where it runs free
+LONGEST, LONGEST_FREE = 0.016, math.radians(2.0)  # s, of a step: where the crank is slow; rad: where it runs free
 QUICK = 0.25  # of the time constant of a rise, that no step is longer than
 # A crank that runs free where the legs' inertia grows or falls many times within a degree: what the table chooses its
 # steps by, a crank that turns evenly, knows nothing of it. Of the crank's speed in a step, per itself.
-SPEED_TOLERANCE = 1e-4
+SPEED_TOLERANCE = 1e-5
 
 
 class System(NamedTuple):

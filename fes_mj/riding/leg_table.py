@@ -27,7 +27,7 @@ from fes_mj.riding.stimulated import StimulatedRider, felt_over
 CELL_TOLERANCE, STEP_TOLERANCE = 1e-5, 1e-4
 LEAST_PUSH = 1e-3  # N m, of moments that are next to nothing
 MOST_CELLS = 64 * POINTS
-LONGEST_STEP = math.radians(2.0)
+LONGEST_STEP = math.radians(4.0)
 REST_POINTS = 360  # crank angles at which stimulation at a stand is known
 
 
