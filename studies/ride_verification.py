@@ -106,7 +106,7 @@ def outcome(ride: Ride) -> Outcome:
 
 
 def paper_table(outcomes: Sequence[Outcome]) -> Table:
-    """What came out, and how far the solvers are apart; a ride whose checks fail has no row."""
+    """What came out, and how far the solvers are apart; a ride that is refused or whose checks fail has no row."""
     columns = {
         "design": "",
         "group": "",
@@ -124,7 +124,7 @@ def paper_table(outcomes: Sequence[Outcome]) -> Table:
     rows = []
     for done in outcomes:
         ride, result = done.ride, done.summary
-        if not result["agrees"]:
+        if not result.get("agrees"):
             continue
         ripple = result["speed_ripple"]
         rows.append(
