@@ -176,7 +176,7 @@ def ride(ride: Ride, fineness: int = 1) -> Trace:
     where the equation cannot be integrated.
 
     >>> fes_mj.ride(fes_mj.Ride(fes_mj.load_design("d1"), fes_mj.load_moments("p1p2")))
-    <Trace d1 p1p2 freewheel 0 %: rides at 30.37 km/h after 60 s>
+    <Trace d1 p1p2 freewheel 0 %: rides at 30.36 km/h after 60 s>
     """
     from fes_mj.riding import equation, solver  # with numba, which takes a second to import
 
