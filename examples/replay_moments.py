@@ -39,7 +39,7 @@ def load(path: Path) -> tuple[mujoco.MjModel, dict[str, Any], list[str]]:
     if not motors or missing(columns):
         stop(f"{table}: the columns {', '.join(missing(columns)) or 'knee_Nm'} are not there; export the model again")
     if not actuators.issuperset(motors):
-        stop(f"{path}: it has no motors {', '.join(motors)}; export it without the variant passive, and with its table")
+        stop(f"{path}: it has no motors {', '.join(motors)}; export it without the variants passive and muscles")
     if "crank_servo" not in actuators and model.joint("crank").armature[0] < 1e5:
         stop(f"{path}: nothing holds its crank at a cadence; export it without the variants free, brake and ride")
     return model, columns, motors

@@ -17,6 +17,10 @@ def _modules() -> dict[str, str]:
     }
 
 
+def __dir__() -> list[str]:
+    return sorted({*globals(), *_modules()})
+
+
 def __getattr__(name: str) -> Any:
     if name == "__all__":
         return [*_modules()]

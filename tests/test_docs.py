@@ -105,7 +105,7 @@ def test_python_as_shown_runs() -> None:
         else:
             exec(code, names)
     assert all(result.startswith("array") if "an array" in said else said.startswith(result) for result, said in shown)
-    assert len(shown) == 3
+    assert len(shown) == 6
 
 
 def test_every_variant_is_in_the_table() -> None:

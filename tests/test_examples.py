@@ -194,7 +194,7 @@ def wrong_files(tmp_path_factory: pytest.TempPathFactory) -> Path:
         ("model.csv", "model.csv: MuJoCo cannot load it"),
         ("folder", "folder: there is no such file"),
         ("scene.xml", "scene.csv: cannot read the table of joint moments: No such file or directory; give the model"),
-        ("passive.xml", "passive.xml: it has no motors knee, hip; export it without the variant passive"),
+        ("passive.xml", "passive.xml: it has no motors knee, hip; export it without the variants passive"),
         ("free.xml", "free.xml: nothing holds its crank"),
         ("words.xml", "words.csv: this is no table of numbers"),
         ("empty.xml", "empty.csv: this is no table of numbers"),

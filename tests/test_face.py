@@ -29,6 +29,7 @@ def test_example(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
 def test_names_are_imported_from_where_they_are_defined() -> None:
     """Type checkers and Python read one list, the stub; no name in it is another module's."""
     assert {name: getattr(fes_mj, name).__module__ for name in fes_mj.__all__} == fes_mj._modules()
+    assert {*fes_mj.__all__} <= {*dir(fes_mj)}
 
 
 def test_the_page_of_the_names_has_them_all() -> None:

@@ -29,6 +29,8 @@ from fes_mj.muscles.rules import BEST, stimulated
 from fes_mj.muscles.timing import ANGLES, DUTY, activation
 from fes_mj.statics.turn import QuasiStatic
 
+NO_MUSCLES = "no muscles belong to these moments; `fes_mj moments TRIAL --fit-muscles -o RIDER.npz` finds some"
+
 INTERVAL = (5, 95)  # %, between which a quantity is said to lie
 
 
@@ -133,7 +135,7 @@ def answer(
     mean = float(np.mean([leg.power_mean for leg in legs])) if legs else None
     paper = paper_powers(*legs) if legs else None
     if riders is None:
-        return Answer(design, mean, paper, missing="no muscles belong to these moments")
+        return Answer(design, mean, paper, missing=NO_MUSCLES)
     try:
         rider = rider_powers(design, riders, cadence, duty)
     except (InputError, AssemblyError) as error:

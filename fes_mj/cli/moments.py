@@ -36,7 +36,7 @@ def moments(
             keeps the tricycle, which a plain CSV does not know.
         identify: Find R1, R2 and the seat's angle from the recorded angles of knee and hip.
         fit_muscles: Find muscles that may have given these moments, and write them with -o (.npz) for `--drive muscles
-            --muscles`; takes minutes.
+            --muscles`; takes a minute.
     """
     if fit_muscles:
         require_trial(file, out)

@@ -28,7 +28,7 @@ def needs(flag: str) -> Callable[[ArgumentCollection], None]:
     """A validator of a group whose options mean nothing without one of them."""
 
     def check(arguments: ArgumentCollection) -> None:
-        names = [argument.name for argument in arguments.filter_by(value_set=True)]
+        names = [argument.name for argument in arguments.filter_by(value_set=True) if argument.name.startswith("--")]
         if names and flag not in names:
             raise ValueError(f"{names[0]} needs {flag}.")
 

@@ -135,6 +135,15 @@ def _print(design: Answered, curves: bool, verbose: bool) -> None:
         tables.print_notes(turn, f"{turn.driver}: " if len(turns) > 1 else "")
 
 
+def _missing(designs: list[Answered]) -> dict[str, list[str]]:
+    """Why there is no number for a rider, and of which designs."""
+    reasons: dict[str, list[str]] = {}
+    for design in designs:
+        if design.answer.missing:
+            reasons.setdefault(design.answer.missing, []).append(design.name)
+    return reasons
+
+
 def _print_comparison(designs: list[Answered], verbose: bool) -> None:
     """A row a design; with more, a column a design."""
     base = designs[0]
@@ -148,6 +157,8 @@ def _print_comparison(designs: list[Answered], verbose: bool) -> None:
     per = f"per {base.name}"
     heads = ("design", "rpm", "as the paper assumes, W", per, "for a rider, W", per, "per equally timed TRT")
     print_table(f"{base.result.first.driver}; mean crank power of a leg (5 to 95 %)", heads, rows)
+    for reason, names in _missing(designs).items():
+        say(f"for a rider, {', '.join(names)}: {reason}")
     for design in designs:
         if design.loss:
             say(f"{design.name}: {tables.friction(design.loss)}")

@@ -31,8 +31,10 @@ def what_moves(design: Design, driver: str) -> str:
 
 def power_rows(result: DrivenTurn) -> list[tuple[str, str]]:
     """Quantity and quasi-static value, as text."""
+    of = "riders" if isinstance(result, MuscleStatic) else "moments"
+    part = "" if result.power_sd is None else f" (+-: {of} alone)"
     return [
-        ("mean crank power, W", with_error(result.power_mean, result.power_sd)),
+        (f"mean crank power, W{part}", with_error(result.power_mean, result.power_sd)),
         ("work per turn, J", f"{result.work_per_turn:.3f}"),
         *((f"{joint} angle, deg", span(ends)) for joint, ends in result.joint_range_deg.items()),
     ]

@@ -100,7 +100,8 @@ def _time(turns: Sequence[Turn], declared: ReferenceTricycle, cadence_said: bool
     yield Comparison(
         "uneven_turns", "turns last", f"{durations.min():.2f} to {durations.max():.2f} s", f"half of them {middle:.2f}",
         bool(np.all(np.abs(durations / middle - 1) <= _UNEVEN)),
-        "a start from rest, a pause or a stop: cut it out, moments at standstill are not those of pedalling",
+        "a start from rest, a pause or a stop: cut it out, moments at standstill are not those of pedalling; where "
+        "samples are missing make two trials of one (moments.file may be a list)",
     )  # fmt: skip
     if any(turn.crank_speed for turn in turns):
         slow, fast = crank_speeds(turns)
@@ -109,7 +110,7 @@ def _time(turns: Sequence[Turn], declared: ReferenceTricycle, cadence_said: bool
     back = max(_setback(turn.crank_angle if turn.pose is None else turn.pose) for turn in turns)
     yield Comparison(
         "goes_back", "crank goes back by", f"{back:.0f} deg", f"up to {_SETBACK:g} expected", back <= _SETBACK,
-        "a turn that goes back is none: cut it out",
+        "a turn that goes back is none, nor is one with a stretch of time missing: cut it out",
     )  # fmt: skip
 
 

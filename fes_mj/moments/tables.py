@@ -80,7 +80,8 @@ class Table:
         value = _value(cell, self.decimal)
         if not np.isfinite(value):
             shown = cell if len(cell) <= _SHOWN else f"{cell[:_SHOWN]}..."
-            raise InputError(f"{self.path}: line {line}: {column} is {shown!r}; it must be a finite number")
+            way = "; take rows without a measurement out, the curve bridges them" * (cell.lower() in ("", "nan"))
+            raise InputError(f"{self.path}: line {line}: {column} is {shown!r}; it must be a finite number{way}")
         return value
 
     def taken(self, rows: Collection[int]) -> "Table":

@@ -105,7 +105,10 @@ def figures_page() -> str:
 
 
 def _page(title: str, sections: Iterable[str]) -> str:
-    origin = "Written by `fes_mj reproduce`; versions and inputs: reproduction.json. Errors are one standard deviation."
+    origin = (
+        "Written by `fes_mj reproduce`; versions and inputs: reproduction.json. A +- is one standard deviation, of the "
+        "recovered moments alone where a table does not say of what."
+    )
     return "\n".join([f"# {title}\n", f"{origin}\n", *sections])
 
 

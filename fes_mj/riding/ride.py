@@ -104,7 +104,12 @@ class Ride(Brief):
         return WHEEL_DIAMETER / 2 / self.design.linkage.gear_ratio
 
     def require_possible(self) -> None:
-        """Raise AssemblyError if the linkage does not turn, InputError for joints that the drive knows nothing of."""
+        """Raise AssemblyError if the linkage does not turn, InputError for joints that the drive knows nothing of.
+
+        InputError also for a transmission that is none.
+        """
+        if self.transmission not in TRANSMISSIONS:
+            raise InputError(f"transmission is {self.transmission!r}; it must be one of {', '.join(TRANSMISSIONS)}")
         if isinstance(self.drive, JointMoments):
             for leg in TWO_LEGS:
                 turning_in_range(self.design, self.drive.of_leg(leg.prefix).measured_on)

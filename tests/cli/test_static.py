@@ -75,6 +75,13 @@ def test_own_moments_have_no_muscles(capsys: pytest.CaptureFixture[str], tmp_pat
     missing = ("power_sd_W", "power_sd_total_W", "power_sd_by", "paper_power_interval_W", "rider_power_mean_W")
     assert [content[key] for key in missing] == [None] * len(missing)
     assert "for a rider: no muscles belong to these moments" in result(capsys, "static", "d1", "--moments", str(own))[1]
+    beside = result(capsys, "static", "trt", "d1", "--moments", str(own))[1]
+    assert "for a rider, trt, d1: no muscles belong to these moments" in beside
+
+
+def test_own_moments_and_own_muscles_are_two_runs(capsys: pytest.CaptureFixture[str]) -> None:
+    said = result(capsys, "static", "d1", "--moments", "own.toml", "--muscles", "rider.npz")[2]
+    assert "--muscles needs --drive" in said
 
 
 def test_what_is_asked_is_short(capsys: pytest.CaptureFixture[str]) -> None:

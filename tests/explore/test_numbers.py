@@ -46,5 +46,5 @@ def test_why_there_is_no_rider() -> None:
         "rider": [True, False, True],
     }
     own = fes_mj.load_moments("examples/trial/trial.toml")
-    assert numbers(D1, D1, own)["why"] == "no muscles belong to these moments"
+    assert numbers(D1, D1, own)["why"].startswith("no muscles belong to these moments")
     assert by_muscles(D1, own) == {"why": f"no muscles of {own.name} are known, only of p1p2 and p1p3"}

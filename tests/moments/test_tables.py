@@ -116,6 +116,13 @@ def test_a_file_without_a_line_end_is_whole(tmp_path: Path) -> None:
     assert load_table(path, "moments").column("knee").tolist() == [11.25, 14]
 
 
+@pytest.mark.parametrize("cell", ["", "nan"])
+def test_a_sample_that_is_missing_is_to_be_taken_out(tmp_path: Path, cell: str) -> None:
+    (path := tmp_path / "a.csv").write_text(f"time,knee\n0,1\n1,{cell}\n2,3\n")
+    with pytest.raises(InputError, match=r"line 3: knee is .*; take rows without a measurement out"):
+        load_table(path, "moments").column("knee")
+
+
 def test_a_column_that_is_nearly_there_is_named(tmp_path: Path) -> None:
     (path := tmp_path / "a.csv").write_text("time,Knee_Nm,hip\n" + lines(","))
     with pytest.raises(
