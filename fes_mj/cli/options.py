@@ -1,6 +1,6 @@
 """Options that several commands share, and what they load."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple, TypeAlias
@@ -19,9 +19,15 @@ from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.statics.friction import Bearings
 
 
-def bounds(variable: str) -> Number:
-    """A validator with the bounds that a design variable has in files."""
-    return Number(gte=VARIABLES[variable].low, lte=VARIABLES[variable].high)
+def bounds(variable: str) -> Callable[[Any, Any], None]:
+    """A validator with the bounds that a design variable has in files, in words with its unit."""
+    known = VARIABLES[variable]
+
+    def check(_: Any, value: Any) -> None:
+        if not all(map(known.accepts, value if isinstance(value, Sequence) else [value])):
+            raise ValueError(f"It must be {known.allowed}.")
+
+    return check
 
 
 def needs(flag: str) -> Callable[[ArgumentCollection], None]:

@@ -78,7 +78,7 @@ def test_a_population(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkey
         (("--percentile", "50"), "--stature and --percentile need --sex"),
         (("--sex", "male"), "which needs one of them"),
         (("--thigh", "0.4"), "thigh and shank. Missing argument: --shank"),
-        (("--thigh", "40", "--shank", "50"), '"40.0" for --thigh. Must be <= 2.0.'),
+        (("--thigh", "40", "--shank", "50"), '"40.0" for --thigh. It must be a length in metres from 0.001 to 2.'),
         (("--thigh", "0.4", "--shank", "0.5", *MAN), "Mutually exclusive arguments: {--thigh, --percentile}"),
         (("--up", "0.1", "0"), "--up is 0.1 0, an empty range"),
         (("--forward", "-5", "30"), '"(-5.0, 30.0)" for --forward. Must be >= -1.'),

@@ -62,8 +62,8 @@ def test_moments_say_where_the_linkage_lets_them_drive(capsys: pytest.CaptureFix
     ("arguments", "said"),
     [
         (["d9"], "d9"),
-        (["d1", "--cadence", "0"], "for --cadence. Must be >= 1."),
-        (["d1", "--cadence", "60", "--cadence", "nan"], "for --cadence. Must be"),
+        (["d1", "--cadence", "0"], "for --cadence. It must be a cadence in rpm from 1 to 200"),
+        (["d1", "--cadence", "60", "--cadence", "nan"], "for --cadence. It must be a cadence"),
         (["d1", "--lag", "0.1"], "--drive muscles"),
         (["d1", *MOMENTS, "--lag", "0.1"], "--drive muscles"),
         (["d1", "--duty", "0"], "duty is 0"),
