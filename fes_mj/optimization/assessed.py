@@ -1,14 +1,19 @@
 """What is said of every found design, whatever drives it: simulated against statics, joint speeds, can it be built."""
 
 from dataclasses import asdict, dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+from fes_mj.budget.answer import Answer, answer
 from fes_mj.common.units import RPM
 from fes_mj.crosscheck.turn_case import Case
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.joints import PerJoint
+from fes_mj.moments.joint_moments import GROUPS
+from fes_mj.muscles.drive import Muscles
+from fes_mj.muscles.riders import load_riders
 from fes_mj.optimization.buildable import COMMON, Buildability
-from fes_mj.statics.turn import DrivenTurn
+from fes_mj.statics.turn import DrivenTurn, QuasiStatic
 
 if TYPE_CHECKING:
     from fes_mj.optimization.optimize import Optimum
@@ -39,6 +44,25 @@ class Assessed:
     def agrees(self) -> bool:
         """Whether dynamics and statics do."""
         return self.case.agrees
+
+    @cached_property
+    def answer(self) -> Answer:
+        """Both numbers: as the paper assumes where moments drive, and for a rider whose muscles are known."""
+        drive, static = self.case.drive, self.case.static
+        if isinstance(drive, Muscles):
+            return answer(self.design, riders=drive.riders, duty=drive.duty)
+        legs = [static] if isinstance(static, QuasiStatic) else []
+        return answer(self.design, legs, load_riders(drive.name) if drive.name in GROUPS else None)
+
+    @property
+    def answer_rows(self) -> list[tuple[str, str]]:
+        """Both numbers as text, with the intervals in which nine of ten draws of what is not known lie."""
+        rows = (
+            ("as the paper assumes, W (5 to 95 %)", self.answer.paper_power, 2),
+            ("for a rider, best timing, W (5 to 95 %)", self.answer.rider_power, 1),
+            ("for a rider, per equally timed TRT", self.answer.rider_ratio, 2),
+        )
+        return [(name, estimate.text(digits)) for name, estimate, digits in rows if estimate]
 
     @property
     def simulated_rows(self) -> list[tuple[str, str]]:
@@ -81,4 +105,5 @@ class Assessed:
             "doubts": self.doubts(optimum),
             "repair": optimum.repair or None,
             **people,
+            **self.answer.summary(),
         }

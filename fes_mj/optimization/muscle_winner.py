@@ -59,7 +59,8 @@ class MuscleWinner(Assessed):
         mean, deviation, share = self.gain
         windows = (self.turn.windows_deg or {}).items()
         return [
-            ("mean crank power, W", f"{self.turn.power_mean:.2f} ± {self.turn.power_sd:.2f}"),
+            *self.answer_rows,
+            ("expected on the design as it is, W", f"{self.turn.power_mean:.2f}"),
             ("  of the most probable rider", f"{self.case.static.power_mean:.3f}"),
             *((f"  his {name}", value) for name, value in self.simulated_rows),
             *self.speed_rows,

@@ -120,6 +120,7 @@ class Winner(Assessed):
         static = self.case.static
         lowest, highest, swing, _ = self.smoothness.values()
         cells = [
+            *self.answer_rows,
             ("mean crank power by statics, W", f"{static.power_mean:.3f}"),
             *self.simulated_rows,
             ("work per turn, J", f"{static.work_per_turn:.3f}"),
