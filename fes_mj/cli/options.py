@@ -24,7 +24,8 @@ def bounds(variable: str) -> Callable[[Any, Any], None]:
     known = VARIABLES[variable]
 
     def check(_: Any, value: Any) -> None:
-        if not all(map(known.accepts, value if isinstance(value, Sequence) else [value])):
+        given = value if isinstance(value, Sequence) else [value]
+        if not all(known.accepts(number) for number in given if number is not None):
             raise ValueError(f"It must be {known.allowed}.")
 
     return check

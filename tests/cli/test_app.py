@@ -22,7 +22,7 @@ from tests.cli.conftest import result
             "Mutually exclusive arguments: {--group, --moments}",
         ),
         (["static", "d1", "--moments", "none.csv"], "none.csv: cannot read the joint moments"),
-        (["static", "d1", "--cadence", "0"], 'Invalid value "0.0" for --cadence. Must be >= 1.'),
+        (["static", "d1", "--cadence", "0"], 'Invalid value "0.0" for --cadence. It must be a cadence in rpm'),
         (["static", "d1", "--cadence", "nan"], 'Invalid value "nan" for --cadence'),
         (["static", "d1", "--cadence", "fast"], 'Invalid value for --cadence: unable to convert "fast"'),
         (["simulate", "d1", "--timestep", "1"], 'Invalid value "1.0" for --timestep. Must be <= 0.02.'),
