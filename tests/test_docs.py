@@ -35,6 +35,7 @@ def _plain(text: str) -> str:
         "engineer.md",
         pytest.param("own_moments.md", marks=pytest.mark.process),
         "stimulation.md",
+        pytest.param("riders.md", marks=pytest.mark.long),
         pytest.param("reviewer.md", marks=pytest.mark.long),
     ],
 )

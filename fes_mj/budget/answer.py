@@ -143,7 +143,8 @@ def answer(
     try:
         trt = rider_powers(replace(load_design("trt"), rider=design.rider), riders, cadence, duty)
     except (InputError, AssemblyError) as error:
-        return Answer(design, mean, paper, rider, missing=f"no tricycle to compare with: {error}")
+        missing = f"no tricycle to compare with: {error}; `fes_mj fit trt` seats a rider on one, to be named first"
+        return Answer(design, mean, paper, rider, missing=missing)
     return Answer(design, mean, paper, rider, trt)
 
 

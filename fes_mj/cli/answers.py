@@ -14,8 +14,8 @@ from fes_mj.statics.turn import DrivenTurn, QuasiStatic, quasi_static
 
 AS_ASSUMED, FOR_A_RIDER, PER_TRT = (
     "as the paper assumes: moments by joint angle, W",
-    "for a rider: muscles, best timing, W",
-    "for a rider, per equally timed TRT: to be quoted",
+    "for a rider: muscles, best timing, mean, W",
+    "times the traditional tricycle's: to be quoted",
 )
 
 

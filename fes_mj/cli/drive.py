@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal, NamedTuple
+from typing import Annotated, Literal, NamedTuple
 
 from cyclopts import Group, Parameter
 
@@ -37,13 +37,13 @@ class DriveOptions:
         drive: Joint moments that belong to joint angles, as in the paper, or stimulated muscles.
         timing: When muscles are stimulated: best in expectation, as in the measurement, or as the joint angles say;
             by-angle is the paper's rule, in which the moments of the measurement belong to the joint angles.
-        duty: Largest share of the turn in which a muscle group is stimulated.
+        duty: Largest share of the turn in which a muscle group is stimulated: 0.222 for windows of at most 80 deg.
         muscles: An ensemble of riders (.npz) instead of the group's.
     """
 
     drive: Literal["moments", "muscles"] = "moments"
     timing: Literal["best", "measured", "by-angle", "stimulation-by-angle"] = "best"
-    duty: float = DUTY
+    duty: Annotated[float, Parameter(show_default=lambda share: f"{360 * share:.0f}/360")] = DUTY
     muscles: Path | None = None
 
     def load_riders(self, options: MomentsOptions) -> Riders:

@@ -9,6 +9,8 @@ from typing import Annotated, Any, Literal
 from cyclopts import Group, Parameter
 from cyclopts.validators import Number, all_or_none, mutually_exclusive
 
+from fes_mj.budget.answer import Answer, answer
+from fes_mj.cli.answers import FOR_A_RIDER
 from fes_mj.cli.options import (
     Cadence,
     DesignName,
@@ -27,6 +29,7 @@ from fes_mj.cli.tables import or_dash, print_notes, span
 from fes_mj.common.console import conclude, print_table, progress_bar, say
 from fes_mj.common.errors import InputError, require_extra
 from fes_mj.common.text import printable
+from fes_mj.common.units import RPM
 from fes_mj.common.writing import require_writable, write_text
 from fes_mj.fit.population import GRADES, STEPS, PopulationFit, fit_population
 from fes_mj.fit.seat import SeatFit, fit_seat, seat_text
@@ -34,6 +37,7 @@ from fes_mj.fit.seats import SeatLimits
 from fes_mj.linkage.design import Design, Rider
 from fes_mj.linkage.design_file import design_toml, load_design
 from fes_mj.linkage.riders import SAMPLES, populations
+from fes_mj.muscles.riders import load_riders
 
 _OF_RIDER, _OF_SEAT = Group("Rider"), Group("Seat")
 _LEG = Group("legs, thigh and shank", show=False, validator=all_or_none)
@@ -154,17 +158,22 @@ def fit(
         _show_population(people, plot, options)
     else:
         require_writable(out, "the design", ".toml", inputs)
-        _show_seat(fit_seat(loaded, who.load(loaded), joint_moments, limits), ratio, out, options)
+        riders = None if moments.moments else load_riders(moments.group or "p1p2")
+        seated = fit_seat(loaded, who.load(loaded), joint_moments, limits)
+        powers = Answer(seated.design)
+        if seated.static:
+            powers = answer(seated.design, seated.static.turns, riders, cadence and cadence * RPM)
+        _show_seat(seated, powers, ratio, out, options)
 
 
-def _show_seat(result: SeatFit, gear_ratio: float, out: Path | None, options: PrintOptions) -> None:
+def _show_seat(result: SeatFit, powers: Answer, gear_ratio: float, out: Path | None, options: PrintOptions) -> None:
     """Write the design, if the rider fits, geared as it was given; print the result."""
     written = out if result.fits else None
     if written:
         write_text(written, design_toml(result.design.with_linkage(gear_ratio=gear_ratio), _origin(result)))
     options.show(
-        lambda: result.summary() | {"design_file": written and str(written)},
-        lambda: _print(result),
+        lambda: result.summary() | powers.summary() | {"design_file": written and str(written)},
+        lambda: _print(result, powers),
         design_file=written,
     )
 
@@ -178,7 +187,7 @@ def _origin(result: SeatFit) -> str:
     )
 
 
-def _print(result: SeatFit) -> None:
+def _print(result: SeatFit, powers: Answer) -> None:
     summary, rider = result.summary(), result.rider
     legs = f"thigh {100 * rider.thigh:.1f}, shank {100 * rider.shank:.1f} cm, {rider.mass:.1f} kg"
     rows = [("seat", seat_text(result.seat)), ("seat angle, deg", f"{summary['seat_angle_deg']:.1f}")]
@@ -189,7 +198,11 @@ def _print(result: SeatFit) -> None:
             ("the paper's rider, seat as drawn, W", or_dash(summary["power_paper_rider_W"], ".2f", "does not turn")),
             *((f"{joint} angle, deg", span(ends)) for joint, ends in result.static.first.joint_range_deg.items()),
         ]
+        if powers.rider_power:
+            rows.insert(5, (f"{FOR_A_RIDER} (5 to 95 %)", powers.rider_power.text(1)))
     print_table(f"{result.drawn.name}; {result.moments.name}; {legs}", ("", "best seat"), rows)
+    if powers.missing:
+        say(f"for a rider: {powers.missing}")
     if result.static:
         for turn in result.static.turns:
             print_notes(turn)

@@ -161,13 +161,13 @@ def _rows(trace: Trace, uncertainty: float) -> list[tuple[str, str]]:
     speed, cadence, ripple = trace.mean_speed, trace.cadence, trace.ripple
     return [
         ("speed over the last turns, km/h", or_dash(speed and speed / KMH, ".3f")),
-        ("numerical uncertainty of the speed, %", f"{100 * uncertainty:.2g}"),
+        ("numerical uncertainty of the speed, %", or_dash(speed and 100 * uncertainty, ".2g")),
         ("cadence, rpm", or_dash(cadence and cadence / RPM, ".1f")),
         ("speed ripple, %", or_dash(ripple and 100 * ripple, ".2f")),
         ("freewheeling, % of the time", f"{100 * trace.coasting_share:.1f}"),
         ("distance, m", f"{trace.distance.max():.2f}"),
         ("stopped after, s", or_dash(trace.stopped_at, ".2f")),
         ("ended after, s", f"{trace.time[-1]:.2f}"),
-        ("muscle power, W", or_dash(trace.muscle_power, ".2f")),
+        ("muscle power of both legs, W", or_dash(trace.muscle_power, ".2f")),
         ("road power, W", or_dash(trace.road_power, ".2f")),
     ]

@@ -117,7 +117,7 @@ def _print(case: fes_mj.Case, answer: Answer, checks: Sequence[Check], verbose: 
     statics, run = case.statics, case.simulation
     powers = [("as the paper assumes, simulated, W", run.power_mean)]
     if isinstance(statics, MuscleStatic):
-        whose = f"the most probable rider, as drawn, timing {statics.rule}"
+        whose = f"the most probable rider alone, timing {statics.rule}"
         powers = [(f"{whose}, W", case.static_power_mean), ("the same, simulated, W", run.power_mean)]
     print_answer(statics, answer, *powers)
     if isinstance(statics, MuscleStatic):

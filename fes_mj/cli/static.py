@@ -155,9 +155,11 @@ def _print_comparison(designs: list[Answered], verbose: bool) -> None:
         assumed = answer.paper_power.text(2) if answer.paper_power else tables.or_dash(answer.paper_mean, ".2f")
         rows.append((design.name, f"{design.result.first.cadence / RPM:.1f}", assumed, *cells))
     per = f"per {base.name}"
-    heads = ("design", "rpm", "as the paper assumes, W", per, "for a rider, W", per, "per equally timed TRT")
+    heads = ["design", "rpm", "as the paper assumes, W", per, "for a rider, W", per, "per equally timed TRT"]
+    if known := all(row[-1] in (row[-2], "-") for row in rows):  # no more than the ratio to the first design says
+        heads, rows = heads[:-1], [row[:-1] for row in rows]
     print_table(f"{base.result.first.driver}; mean crank power of a leg (5 to 95 %)", heads, rows)
-    for reason, names in _missing(designs).items():
+    for reason, names in _missing([each for each in designs if each.answer.rider is None or not known]).items():
         say(f"for a rider, {', '.join(names)}: {reason}")
     for design in designs:
         if design.loss:

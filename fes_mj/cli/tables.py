@@ -148,5 +148,5 @@ def conclude_checks(who: str, checks: Sequence[Check], agreeing: str = "") -> No
         conclude(False, f"{who} do not agree", f": {failed}; `fes_mj validate --explain CHECK` says more.")
     else:
         worst = max(checks, key=lambda check: check.factor)
-        limit = f"worst of {len(checks)} checks: {worst.name}, at {worst.factor:.2g} of its limit"
-        conclude(True, f"{who} agree", f"{agreeing}; {limit}.")
+        nearest = f"nearest to its limit {worst.name}, at {worst.factor:.2g} of it"
+        conclude(True, f"{who} agree", f"{agreeing}; all {len(checks)} checks hold, {nearest}.")

@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 import tomllib
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
@@ -138,7 +139,9 @@ def read_toml(path: Path, what: str) -> Section:
     except InputError:
         raise
     except (ValueError, RecursionError) as error:  # TOMLDecodeError, numbers of thousands of digits, deep nesting
-        raise InputError(f"{path}: not valid TOML: {error}") from None
+        comma = re.search(r"=\s*[-+]?\d+,\d+[ \t]*(#.*)?$", read_text(path, what), re.MULTILINE)
+        hint = f"; a decimal comma? '{comma[0]}'" if comma else ""
+        raise InputError(f"{path}: not valid TOML: {error}{hint}") from None
 
 
 def read_json(path: Path, what: str) -> dict[str, Any]:

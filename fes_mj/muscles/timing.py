@@ -69,12 +69,16 @@ def responded(stimulation: FloatArray, riders: Riders, cadence: FloatArray) -> F
 
 
 def widths_up_to(duty: float) -> FloatArray:
-    """Widths of windows, deg, that are no wider than this share of the turn. Raises InputError if there is none."""
+    """Widths of windows, deg, no wider than this share of the turn, taken to the nearest degree: 0.222 means 80 deg.
+
+    Raises InputError if there is none.
+    """
     if not STEP / 360 <= duty <= 1:
         raise InputError(
-            f"duty is {duty:g}; it must be from {STEP / 360:.3f}, a window of {STEP} deg, to 1, all the turn"
+            f"duty is {duty:g}; it must be a share of the turn (degrees divided by 360), from {STEP / 360:.3f}, a "
+            f"window of {STEP} deg, to 1, all of it"
         )
-    return np.arange(STEP, np.floor(360 * duty / STEP + 1e-9) * STEP + 1, STEP)
+    return np.arange(STEP, np.round(360 * duty) + 1, STEP)
 
 
 def best_windows(

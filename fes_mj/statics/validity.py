@@ -58,9 +58,8 @@ def turning_in_range(design: Design, reference: ReferenceTricycle) -> Turning:
         raise AssemblyError(f"{error}{_likely_cause(design, reference)}") from None
     never = _joints_without_data(turn, reference)
     if never:
-        raise InputError(
-            f"{design.name}: {'; '.join(never)}: it never comes into that range{_likely_cause(design, reference)}"
-        )
+        helps = _likely_cause(design, reference) + _other_seat(design, turn, reference)
+        raise InputError(f"{design.name}: {'; '.join(never)}: it never comes into that range{helps}")
     return turn
 
 
@@ -88,6 +87,14 @@ def _likely_cause(design: Design, reference: ReferenceTricycle) -> str:
             if changed != design and not _joints_without_data(turn, reference):
                 likely.append((_worst(turn, reference), cause))
     return f". Likely cause: {min(likely, key=lambda pair: pair[0])[1]}" if likely else ""
+
+
+def _other_seat(design: Design, turn: Turning, reference: ReferenceTricycle) -> str:
+    """The seat angle with which the hip swings in the middle of its range; nothing where the knee is outside too."""
+    swing, known = turn.motion.joint_angle.hip, reference.ranges.hip
+    seat = np.round(np.degrees(design.linkage.seat_angle + (swing.min() + swing.max() - sum(known)) / 2))
+    other = turning(design.with_linkage(seat_angle=float(np.radians(seat))))
+    return "" if _joints_without_data(other, reference) else f". With another seat it does: seat_angle = {seat:g}"
 
 
 def _worst(turn: Turning, reference: ReferenceTricycle) -> float:

@@ -83,7 +83,7 @@ def _notes(settings: Settings) -> str:
         "strength x largest force, per that of the measurement. Absolute power is hardly known. Another seat, rider "
         "or cadence needs other windows. Begin with little current and with a therapist."
     )
-    return textwrap.fill(text, 200)
+    return textwrap.fill(text, 175)
 
 
 def _ring(axes: Any, setting: Setting) -> None:

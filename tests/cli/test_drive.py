@@ -77,6 +77,7 @@ def test_own_riders_are_those_of_the_file(capsys, tmp_path):
     ("arguments", "said"),
     [
         (("--timing", "best"), "--drive"),
+        (("--duty", "0.2"), "--duty needs --drive"),
         ((*MUSCLES, "--duty", "0"), "duty is 0"),
         ((*MUSCLES, "--duty", "1.5"), "duty is 1.5"),
         ((*MUSCLES, "--moments", "mine.csv"), "--muscles"),

@@ -1,6 +1,7 @@
 """`fes_mj fit`: the promised JSON and file, and what is refused."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -25,6 +26,9 @@ def test_json_and_design_file_agree(tmp_path: Path, capsys: pytest.CaptureFixtur
     static = answer(capsys, "static", str(out))[1]
     for key in ("power_mean_W", "knee_range_deg", "hip_range_deg", "extrapolated_share"):
         assert static[key] == pytest.approx(content[key])
+    same_draws = replace(written, name="r1")  # each name has its own
+    seated = fes_mj.answer(same_draws, riders=fes_mj.load_muscles("p1p2").riders).rider_power
+    assert [content["rider_power_mean_W"], *content["rider_power_interval_W"]] == pytest.approx(seated)
     assert content["power_unmoved_W"] < content["power_mean_W"]
     assert content["power_paper_rider_W"] == pytest.approx(answer(capsys, "static", "r1")[1]["power_mean_W"])
 

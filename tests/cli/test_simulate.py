@@ -36,7 +36,7 @@ def test_what_is_asked_is_short(capsys: pytest.CaptureFixture[str]) -> None:
     for command in (("simulate", "d2"), ("simulate", "r2", "--drive", "muscles")):
         lines = result(capsys, *command)[1].splitlines()
         assert len(lines) <= 12
-        assert "worst of" in lines[-1]
+        assert "checks hold" in lines[-1]
 
 
 def test_tables_carry_units_and_the_verdict(capsys: pytest.CaptureFixture[str]) -> None:

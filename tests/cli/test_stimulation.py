@@ -5,8 +5,13 @@ import sys
 from pathlib import Path
 
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
 
+from fes_mj.linkage.design_file import load_design
 from fes_mj.muscles.riders import load_riders
+from fes_mj.muscles.settings import Settings
+from fes_mj.viewing.settings_page import settings_figure
 from tests.cli.conftest import answer, result
 
 MOMENTS = ("--drive", "moments")
@@ -31,6 +36,7 @@ def test_table_json_and_files(capsys: pytest.CaptureFixture[str], tmp_path: Path
     assert table.read_text().startswith("cadence_rpm,muscle,leg,on_deg,off_deg,")
     assert [page.read_bytes()[:4] for page in pages] == [b"<?xm", b"%PDF"]
     assert "few, 5 riders who may be this one" in pages[0].read_text()
+    _within_the_page(settings_figure(Settings.solve(load_design("d1"), load_riders(few[1]), [6.28], 6.28)))
     code, content = answer(capsys, *arguments)
     assert code == 0
     assert (content["duty_limit"], round(content["cadence_rpm"])) == (0.2, 60)
@@ -38,6 +44,14 @@ def test_table_json_and_files(capsys: pytest.CaptureFixture[str], tmp_path: Path
     first = next(row for row in content["windows"] if round(row["cadence_rpm"]) == 60)
     assert (first["muscle"], first["leg"]) == ("quadriceps", "right")
     assert f"{first['on_deg']:.0f} to {first['off_deg']:.0f}" in out
+
+
+def _within_the_page(figure: Figure) -> None:
+    """Each of the page's own lines of text ends on it."""
+    page = figure.bbox
+    for text in figure.texts:
+        box = text.get_window_extent(FigureCanvasAgg(figure).get_renderer())
+        assert page.x0 <= box.x0 < box.x1 <= page.x1, text.get_text()
 
 
 def test_without_a_cadence_those_that_a_start_passes(capsys: pytest.CaptureFixture[str], few: tuple[str, str]) -> None:

@@ -5,7 +5,7 @@ from fes_mj.linkage.design_file import load_design
 from fes_mj.muscles.power import best_turn
 from fes_mj.muscles.prior import ramp
 from fes_mj.muscles.riders import Riders
-from fes_mj.muscles.timing import ANGLES, DUTY, STEP, Windows, activation
+from fes_mj.muscles.timing import ANGLES, DUTY, STEP, Windows, activation, widths_up_to
 
 DESIGN = load_design("d1")
 CADENCE = DESIGN.linkage.cadence
@@ -36,6 +36,11 @@ def test_no_other_window_of_any_width_is_better(riders, each_its_own):
     assert np.all((chosen - others)[stimulated] >= -1e-5 * others[stimulated])  # chosen in single precision
     assert np.all(windows.width <= 360 * DUTY)
     assert np.all(windows.on % STEP == 0)
+
+
+def test_a_share_is_taken_to_the_nearest_degree():
+    for share, widest in ((0.222, 80), (0.22, 75), (DUTY, 100), (1, 360)):
+        assert widths_up_to(share)[-1] == widest
 
 
 def test_equal_times_are_a_mean_with_the_adjoint(riders):

@@ -77,6 +77,13 @@ def test_no_advice_leaves_a_design_refused(seat: int) -> None:
         assert not _refusal(design.with_linkage(seat_angle=math.radians(float(advised[1]))))
 
 
+def test_a_hip_out_of_range_alone_gets_a_seat_angle_that_helps() -> None:
+    low = fes_mj.load_design("trt").with_linkage(seat_angle=math.radians(10))
+    advised = re.search(r"another seat it does: seat_angle = (\S+)", _refusal(low))
+    assert advised
+    assert not _refusal(low.with_linkage(seat_angle=math.radians(float(advised[1]))))
+
+
 def _refusal(design: Design) -> str:
     try:
         turning_in_range(design, PAPER_TRICYCLE)
