@@ -106,7 +106,8 @@ class Linkage:
     def title(self) -> str:
         """What kind of tricycle it is, in words; with its pedal on the rocker joint one is a crank-rocker."""
         if self.kind == "cdt" and self.pedal_arm < AT_JOINT:
-            return f"{ARCHITECTURES['crt'].title}: coupler-driven in name, its pedal sits on the rocker joint"
+            near = f"its pedal is {1e3 * self.pedal_arm:.3g} mm from the rocker joint"
+            return f"{ARCHITECTURES['crt'].title}: coupler-driven in name, {near}"
         return self.architecture.title
 
     @property

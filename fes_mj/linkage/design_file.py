@@ -71,6 +71,8 @@ def identified_draws(name: str) -> dict[str, FloatArray]:
 
 def read_design(content: Section, name: str) -> Design:
     """A design from the content of a design file. Raises InputError as load_design."""
+    if "kind" in content.content:
+        raise InputError(f"{content.path}: kind = ... stands above all tables; put [linkage] before it")
     content.only(("linkage", "rider", "frame"))
     linkage = content.section("linkage")
     if isinstance(linkage.content.get("rider"), str):

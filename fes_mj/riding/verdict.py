@@ -52,7 +52,7 @@ def _obstacle(trace: Trace) -> str:
         road = "the slope" if ride.road.slope > 0 else "the road"
         work = 2 * np.pi * np.array([asked, max(float(push.mean()), 0.0)])
         return f"{still}{road} takes {work[0]:.0f} J a turn of the crank, the muscles give {work[1]:.0f} J"
-    return f"{still}dead centre at {math.degrees(angle) % 360:.0f} deg"
+    return f"{still}dead centre at {math.degrees(angle) % 360:.0f} deg of the crank, where the legs push too little"
 
 
 def rolls_back(trace: Trace) -> bool:

@@ -55,6 +55,13 @@ def test_a_frame_reads_back_as_it_was_written(tmp_path: Path) -> None:
     assert load_design(path) == design
 
 
+def test_a_file_without_its_first_header_is_told_so(tmp_path: Path) -> None:
+    path = written(tmp_path)
+    path.write_text(path.read_text().replace("[linkage]\n", ""))
+    with pytest.raises(InputError, match=r"put \[linkage\] before it"):
+        load_design(path)
+
+
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
