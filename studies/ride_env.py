@@ -17,7 +17,7 @@ from matplotlib.figure import Figure
 from fes_mj.common.console import track
 from fes_mj.common.markdown import Table
 from fes_mj.common.provenance import provenance
-from fes_mj.common.style import FAINT, SERIES, STYLE
+from fes_mj.common.style import BY_DESIGN, FAINT, SERIES, STYLE
 from fes_mj.common.units import KMH
 from fes_mj.common.writing import json_text, replacing, write_text
 from fes_mj.linkage.design_file import DESIGNS
@@ -60,11 +60,11 @@ def _draw(rows: Sequence[tuple[Any, ...]], runs: dict[tuple[str, str, str], dict
     with mpl.rc_context(STYLE), replacing(RESULTS / "ride-environment.png") as beside:
         figure = Figure(figsize=(9.6, 3.8), layout="constrained")
         over_time, returns = figure.subplots(1, 2, width_ratios=[1.5, 1])
-        for name, colour in zip(DRAWN, SERIES, strict=True):
+        for name in DRAWN:
             for policy, style in zip(POLICIES, ("-", ":"), strict=True):
                 run = runs[name, "freewheel", policy]
                 label = f"{name.upper()}, {policy}"
-                over_time.plot(run["time"], run["speed"] / KMH, style, color=colour, label=label)
+                over_time.plot(run["time"], run["speed"] / KMH, style, color=BY_DESIGN[name], label=label)
         over_time.set(xlabel="time, s", ylabel="speed of the tricycle, km/h", ylim=(0, None))
         over_time.set_title("stimulated by table (solid) and by chance (dotted), freewheel", loc="left")
         over_time.legend(ncols=3)
