@@ -95,6 +95,8 @@ HEADING = f"""# Baselines of the ride environment
 Written by `python -m studies.ride_env`: examples/ride_env.py with its defaults (flat road, muscles of the most probable
 rider of group p1p2), means of {EPISODES} episodes. *table*: each muscle group in its best window
 (`fes_mj stimulation`), led for the actual speed; *random*: each group on or off by chance at 50 Hz.
+Switched on and off without the ramps of `fes_mj ride`: with a freewheel R2 is then faster than the TRT, with them it
+is not.
 An episode ends when the tricycle stops. *sd*: of the return, over episodes.
 
 """
