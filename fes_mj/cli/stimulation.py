@@ -38,8 +38,8 @@ def stimulation(
     """When to stimulate: crank angles for a stimulator, what every muscle group gives and costs, for this seat.
 
     Args:
-        cadence: Crank speed in rpm, also several times, the first in full; by default the one at which the tricycle
-            does 5.71 km/h, and slower ones that a start passes.
+        cadence: Crank speed in rpm, by default the one at which the tricycle does 5.71 km/h, and slower ones that a
+            start passes; or several times these alone, the first in full.
         csv: Write the windows by cadence as a table (.csv).
         out: Draw the page (.svg, .pdf or .png); may be given several times.
     """
@@ -58,7 +58,7 @@ def stimulation(
             f"others are compared by `fes_mj static {design} --drive muscles --timing {drive.timing}`"
         )
     speeds = [speed_at(rpm, loaded) for rpm in cadence or (None,)]
-    slower = np.arange(_SLOWEST, speeds[0] / RPM - _APART, _STEP) * RPM if cadence is None else ()
+    slower = np.arange(_SLOWEST, speeds[0] / RPM - _APART, _STEP) * RPM if len(speeds) == 1 else ()
     settings = Settings.solve(loaded, drive.load_riders(whose), [*speeds, *map(float, slower)], speeds[0], drive.duty)
     if pages:
         from fes_mj.viewing.charts import write_figure
@@ -94,7 +94,10 @@ def _print(settings: Settings) -> None:
     say(f"0: {CRANK_ZERO}; the left leg's windows are 180 deg later. Delay and rise of the muscles are counted in.")
     for note in content["notes"]:
         say(f"note: {note}")
-    say("Effort: share of the turn x strength x largest force, per that of the measurement. +-: over the riders alone.")
+    say(
+        "Effort: share of the turn x strength x largest force, per that of the measurement. +-: standard deviation over the "
+        "riders alone."
+    )
 
 
 def _totals(content: dict[str, Any]) -> list[tuple[str, str]]:

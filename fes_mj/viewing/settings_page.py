@@ -53,7 +53,8 @@ def _for_whom(settings: Settings) -> str:
         f"this seat: hip to crank centre {seat['hip_to_crank_centre_m']:.3f} m, seat angle "
         f"{seat['seat_angle_deg'] % 360:.0f} deg, crank {seat['crank_m']:.3f} m; this rider: thigh "
         f"{seat['thigh_m']:.2f} m, shank {seat['shank_m']:.2f} m, knee bent by {low:.0f} to {high:.0f} deg\n"
-        f"muscles: {printable(riders.name)}, {len(riders)} riders who may be this one; +- and bands are over them"
+        f"muscles: {printable(riders.name)}, {len(riders)} riders who may be this one; +-: standard deviation over "
+        "them, bands: nine of ten"
     )
 
 

@@ -54,11 +54,15 @@ def _within_the_page(figure: Figure) -> None:
         assert page.x0 <= box.x0 < box.x1 <= page.x1, text.get_text()
 
 
-def test_without_a_cadence_those_that_a_start_passes(capsys: pytest.CaptureFixture[str], few: tuple[str, str]) -> None:
+def test_with_one_cadence_or_none_those_that_a_start_passes(
+    capsys: pytest.CaptureFixture[str], few: tuple[str, str]
+) -> None:
     _, content = answer(capsys, "stimulation", "trt", *few)
     assert [round(setting["cadence_rpm"]) for setting in content["settings"]] == [30, 40, 50, 60]
     assert content["cadence_rpm"] == pytest.approx(60.13, abs=0.01)
     assert content["seat"]["seat_angle_deg"] == pytest.approx(60)
+    _, content = answer(capsys, "stimulation", "trt", *few, "--cadence", "45")
+    assert [round(setting["cadence_rpm"]) for setting in content["settings"]] == [30, 45]
 
 
 def test_moments_say_where_the_linkage_lets_them_drive(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
