@@ -95,8 +95,8 @@ def _print(settings: Settings) -> None:
     for note in content["notes"]:
         say(f"note: {note}")
     say(
-        "Effort: share of the turn x strength x largest force, per that of the measurement. +-: standard deviation over the "
-        "riders alone."
+        "Effort: share of the turn x strength x largest force, per that of the measurement. +-: standard deviation "
+        "over the riders alone."
     )
 
 

@@ -133,8 +133,10 @@ class Case(Brief, Setup):
     def difference_text(self) -> str:
         """The same for people: in percent, or in W where the static mean is too small for it to mean anything."""
         if abs(self.static_power_mean) >= LEAST_POWER:
-            return f"{round(100 * self.relative_difference, 4) + 0.0:+.4f} %"  # no minus before zeros alone
-        return f"{round(self.simulation.power_mean - self.static_power_mean, 4) + 0.0:+.4f} W"
+            difference, unit = 100 * self.relative_difference, "%"
+        else:
+            difference, unit = self.simulation.power_mean - self.static_power_mean, "W"
+        return f"{difference:+.4f} {unit}" if round(difference, 4) else f"less than 0.0001 {unit}"
 
     def rms_per_leg(self, run: Simulation, mass_scale: float | None = None) -> float:
         """Instantaneous crank power of a run against reference_power, root mean square per leg, W."""
