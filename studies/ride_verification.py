@@ -83,12 +83,13 @@ def _driven(rng: np.random.Generator, drive: str) -> tuple[Design, JointMoments 
 
 
 class Outcome(NamedTuple):
-    """What is kept of a ride, whose records fill a hundred megabytes; nothing if it was refused."""
+    """What is kept of a ride, whose records fill a hundred megabytes; of one that was refused, why."""
 
     ride: Ride
     summary: dict[str, Any]
     checks: tuple[Check, ...]
     seconds: float
+    refused: str = ""
 
     @property
     def worst(self) -> float:
@@ -101,8 +102,13 @@ def outcome(ride: Ride) -> Outcome:
     case, start = RideCase(ride), time.process_time()
     try:
         return Outcome(ride, case.summary(), case.checks, time.process_time() - start)
-    except InputError:
-        return Outcome(ride, {}, (), 0.0)
+    except InputError as error:
+        return Outcome(ride, {}, (), 0.0, str(error))
+
+
+def _refused(outcomes: Sequence[Outcome]) -> str:
+    """Why rides were refused, for a note."""
+    return "".join(f" Refused: {one.refused}." for one in outcomes if one.refused)
 
 
 def paper_table(outcomes: Sequence[Outcome]) -> Table:
@@ -144,6 +150,7 @@ def paper_table(outcomes: Sequence[Outcome]) -> Table:
             )
         )
     note = "By muscles on the flat, and by both on the slope that their mean power balances at 5.71 km/h."
+    note += _refused(outcomes)
     return Table("Rides in MuJoCo", columns, rows, note)
 
 
@@ -181,7 +188,7 @@ def random_table(outcomes: Sequence[Outcome]) -> Table:
             )
         )
     failed = [one.ride.name for one in outcomes if one.worst > 1]
-    return Table("Random linkages", columns, rows, f"Failed: {'; '.join(failed) or 'none'}.")
+    return Table("Random linkages", columns, rows, f"Failed: {'; '.join(failed) or 'none'}.{_refused(outcomes)}")
 
 
 def checks_table(outcomes: Sequence[Outcome]) -> Table:
