@@ -32,6 +32,13 @@ if hasattr(signal, "SIGHUP"):
 gc.disable()
 
 
+LONGEST = "test_everything_about_the_paper_is_written_again"  # begun first, so that all others run beside it
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    items.sort(key=lambda item: item.name != LONGEST)
+
+
 def pytest_collection_finish() -> None:
     gc.freeze()
     gc.enable()
