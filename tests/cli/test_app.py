@@ -59,6 +59,7 @@ def test_bad_input_gets_one_message_and_exit_code_2(
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.process
 def test_help_and_statics_do_not_import_mujoco() -> None:
     for arguments in (["--help"], ["static", "d1"], ["simulate", "--help"]):
         script = (
@@ -70,6 +71,7 @@ def test_help_and_statics_do_not_import_mujoco() -> None:
         assert done.stderr.strip() == "", arguments
 
 
+@pytest.mark.process
 def test_the_command_and_the_module_are_the_same_thing() -> None:
     done = subprocess.run([sys.executable, "-m", "fes_mj", "--version"], capture_output=True, text=True)
     assert (done.returncode, done.stdout.strip()) == (0, "0.1.0")
@@ -98,6 +100,7 @@ def test_help_needs_nothing_beside_python() -> None:
     assert not {"cyclopts", "numpy", "mujoco", "rich"} & packages
 
 
+@pytest.mark.process
 def test_a_simulation_needs_no_plots_and_no_scipy() -> None:
     code, packages = imported("simulate", "d1")
     assert (code, "mujoco" in packages) == (0, True)

@@ -63,6 +63,7 @@ def test_a_study_that_gives_nothing_is_no_success(tmp_path: Path, capsys: pytest
         f"tcp://{'x' * 300}:80",
     ],
 )
+@pytest.mark.process
 def test_no_scheduler_loses_nothing(
     done: Sweep, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, address: str
 ) -> None:

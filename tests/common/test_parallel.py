@@ -53,6 +53,7 @@ def slow(seconds: float) -> tuple[int, float]:
     return os.getpid(), seconds
 
 
+@pytest.mark.process
 def test_processes_give_the_serial_result(tmp_path: Path) -> None:
     study = study_file(tmp_path)
     serial, parallel = run(study, tmp_path / "serial"), run(study, tmp_path / "parallel", Workers(jobs=2))

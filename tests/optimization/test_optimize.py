@@ -42,6 +42,7 @@ def test_one_call_is_the_search_of_the_problem() -> None:
         optimize("crt", moments, budgte=6000)
 
 
+@pytest.mark.process
 def test_processes_find_the_same_design() -> None:
     pytest.importorskip("joblib")
     from fes_mj.common.parallel import Workers
