@@ -16,17 +16,20 @@ from fes_mj.budget.budget import paper_powers
 from fes_mj.budget.unknowns import drawn_designs
 from fes_mj.common.arrays import FloatArray
 from fes_mj.common.brief import Brief
-from fes_mj.common.errors import AssemblyError, InputError
+from fes_mj.common.errors import InputError
 from fes_mj.linkage import kinematics
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.design_file import load_design
 from fes_mj.linkage.turning import batch_turning, leg_reach
+from fes_mj.moments.files import is_of_group
 from fes_mj.muscles.anatomy import anatomy
+from fes_mj.muscles.drive import Muscles
 from fes_mj.muscles.power import MuscleTurn
 from fes_mj.muscles.pull import pull_each
-from fes_mj.muscles.riders import Riders
+from fes_mj.muscles.riders import Riders, load_riders
 from fes_mj.muscles.rules import BEST, stimulated
 from fes_mj.muscles.timing import ANGLES, DUTY, activation
+from fes_mj.statics.drive import Drive
 from fes_mj.statics.turn import QuasiStatic
 
 NO_MUSCLES = "no muscles belong to these moments; `fes_mj moments TRIAL --fit-muscles -o RIDER.npz` finds some"
@@ -138,14 +141,21 @@ def answer(
         return Answer(design, mean, paper, missing=NO_MUSCLES)
     try:
         rider = rider_powers(design, riders, cadence, duty)
-    except (InputError, AssemblyError) as error:
+    except InputError as error:
         return Answer(design, mean, paper, missing=str(error))
     try:
         trt = rider_powers(replace(load_design("trt"), rider=design.rider), riders, cadence, duty)
-    except (InputError, AssemblyError) as error:
+    except InputError as error:
         missing = f"no tricycle to compare with: {error}; `fes_mj fit trt` seats a rider on one, to be named first"
         return Answer(design, mean, paper, rider, missing=missing)
     return Answer(design, mean, paper, rider, trt)
+
+
+def riders_of(drive: Drive) -> Riders | None:
+    """Whose muscles belong to what drives: those of a rider group to its moments, to a user's own none."""
+    if isinstance(drive, Muscles):
+        return drive.riders
+    return load_riders(drive.name) if is_of_group(drive) else None
 
 
 @lru_cache(maxsize=32)  # the tricycle is compared with every design
@@ -153,8 +163,7 @@ def rider_powers(design: Design, riders: Riders, cadence: float | None = None, d
     """Mean crank power of one leg of every rider, stimulated as is best in expectation, W, shape (members,).
 
     Each on a linkage and with legs that are drawn; NaN where these do not turn, or leave the angles for which muscle
-    lengths are known. cadence: rad/s, by default the design's. Raises InputError or AssemblyError if it does so as it
-    is.
+    lengths are known. cadence: rad/s, by default the design's. Raises InputError if it does so as it is.
     """
     cadence = design.linkage.cadence if cadence is None else float(cadence)
     windows = stimulated(BEST, riders, design, cadence, duty).windows

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -67,19 +68,23 @@ def error_budget(*legs: QuasiStatic, draws: int = DRAWS) -> ErrorBudget | None:
     >>> round(budget.total.mean, 1), round(budget.total.sd, 1)
     (30.5, 1.1)
     """
-    if any(leg.moments.covariance is None for leg in legs):
+    total = paper_powers(*legs, draws=draws)
+    if total is None:
         return None
     uncertain = [UncertainPower(leg, draws) for leg in legs]
     alone, known = np.arange(draws), _linear(legs) | {MASSES: 0.0}
     by = {name: known[name] if name in known else Spread.of(powers(uncertain, {name: alone})).sd for name in priors()}
-    return ErrorBudget(by, Spread.of(powers(uncertain, together(unknowns(), draws))), draws)
+    return ErrorBudget(by, Spread.of(total), draws)
 
 
+@lru_cache(maxsize=8)  # a result has both its interval and its budget
 def paper_powers(*legs: QuasiStatic, draws: int = DRAWS) -> FloatArray | None:
     """The same powers with all unknowns drawn, W, shape (draws,), NaN where a linkage does not turn; None likewise."""
     if any(leg.moments.covariance is None for leg in legs):
         return None
-    return powers([UncertainPower(leg, draws) for leg in legs], together(unknowns(), draws))
+    drawn = powers([UncertainPower(leg, draws) for leg in legs], together(unknowns(), draws))
+    drawn.setflags(write=False)
+    return drawn
 
 
 def summary(budget: ErrorBudget | None) -> dict[str, Any]:

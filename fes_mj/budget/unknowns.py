@@ -15,8 +15,8 @@ from fes_mj.common.reading import DATA, read_toml
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.design_file import identified_draws, load_design
 from fes_mj.linkage.variables import LENGTHS, component, replaced
-from fes_mj.moments.files import load_moments, sampled_coefficients
-from fes_mj.moments.joint_moments import GROUPS, JointMoments
+from fes_mj.moments.files import is_of_group, sampled_coefficients
+from fes_mj.moments.joint_moments import JointMoments
 
 # As data/error_budget.toml has them; the last has no effect on a mean power.
 MOMENTS, DIMENSIONS, RIDER = "moments", "dimensions", "rider"
@@ -65,8 +65,7 @@ def _coefficients(moments: JointMoments, count: int) -> FloatArray:
     """The curves that ship, of a rider group; otherwise Gaussian ones."""
     covariance = moments.covariance
     assert covariance is not None
-    shipped = load_moments(moments.name).covariance if moments.name in GROUPS else None
-    if shipped is not None and np.array_equal(covariance, shipped):
+    if is_of_group(moments):
         return _spread(sampled_coefficients(moments.name), count)
     deviations = np.concatenate([*moments.deviations])
     scores = np.random.default_rng(_seed(moments.name)).standard_normal((count, deviations.shape[1]))

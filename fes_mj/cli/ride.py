@@ -138,8 +138,10 @@ def _print(case: fes_mj.RideCase, starts: Starts | None, verbose: bool) -> None:
         say(NO_FALL)
     if case.agrees:
         road = f"{ride.transmission}{' gear' if ride.fixed else ''}, {100 * ride.road.slope:g} % slope"
-        rider = "" if isinstance(ride.drive, JointMoments) else f", timing {ride.drive.timing}, the most probable rider"
-        title = f"{what_moves(ride.design, ride.drive.name)}{rider}; {road}"
+        moved = ride.drive.name
+        if isinstance(ride.drive, StimulatedRider):
+            moved = f"{ride.drive.driver}, the most probable rider"
+        title = f"{what_moves(ride.design, moved)}; {road}"
         error = case.uncertainty
         rows = beside(_rows(run, error["mujoco"]), _rows(case.reference, error["reduced"]))
         print_table(title, ("", "MuJoCo", "reduced model"), [row for row in rows if set(row[1:]) != {"-"}])

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from fes_mj.budget.answer import Answer, Estimate, answer
+from fes_mj.budget.answer import Answer, Estimate, answer, riders_of
 from fes_mj.common.errors import InputError
 from fes_mj.explore.turn import DIGITS, Number, shown
 from fes_mj.linkage.design import Design
@@ -65,7 +65,7 @@ def _answered(design: Design, moments: JointMoments) -> Answer:
         legs = [quasi_static(design, moments)]
     except InputError as error:
         return Answer(design, missing=str(error))
-    return answer(design, legs, load_riders(moments.name) if moments.name in GROUPS else None)
+    return answer(design, legs, riders_of(moments))
 
 
 def _both(own: Answer, paper: Estimate | None, rider: Estimate | None) -> dict[str, list[list[str] | None]]:

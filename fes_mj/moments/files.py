@@ -45,6 +45,13 @@ def _of_group(name: str) -> JointMoments:
     return JointMoments(name, np.radians(angle), knee, hip, covariance=np.load(path.with_suffix(".npy")))
 
 
+def is_of_group(moments: JointMoments) -> bool:
+    """Whether moments are those of a rider group that ship, and not others of its name."""
+    covariance = moments.covariance
+    shipped = load_moments(moments.name).covariance if moments.name in GROUPS else None
+    return covariance is not None and shipped is not None and np.array_equal(covariance, shipped)
+
+
 def measurement_toml(moments: JointMoments, data: Path) -> str:
     """The measurement file beside the plain CSV of moments: the tricycle, rider and cadence that it does not know.
 

@@ -4,14 +4,13 @@ from dataclasses import asdict, dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from fes_mj.budget.answer import Answer, answer
+from fes_mj.budget.answer import Answer, answer, riders_of
 from fes_mj.common.units import RPM
 from fes_mj.crosscheck.turn_case import Case
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.joints import PerJoint
-from fes_mj.moments.joint_moments import GROUPS
 from fes_mj.muscles.drive import Muscles
-from fes_mj.muscles.riders import load_riders
+from fes_mj.muscles.timing import DUTY
 from fes_mj.optimization.buildable import COMMON, Buildability
 from fes_mj.statics.turn import DrivenTurn, QuasiStatic
 
@@ -49,10 +48,9 @@ class Assessed:
     def answer(self) -> Answer:
         """Both numbers: as the paper assumes where moments drive, and for a rider whose muscles are known."""
         drive, static = self.case.drive, self.case.static
-        if isinstance(drive, Muscles):
-            return answer(self.design, riders=drive.riders, duty=drive.duty)
         legs = [static] if isinstance(static, QuasiStatic) else []
-        return answer(self.design, legs, load_riders(drive.name) if drive.name in GROUPS else None)
+        duty = drive.duty if isinstance(drive, Muscles) else DUTY
+        return answer(self.design, legs, riders_of(drive), duty=duty)
 
     @property
     def answer_rows(self) -> list[tuple[str, str]]:

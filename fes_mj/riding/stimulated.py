@@ -64,6 +64,11 @@ class StimulatedRider(Brief):
         return f"{self.riders.name} muscles"
 
     @property
+    def driver(self) -> str:
+        """What moves the legs, in a few words, as of Muscles."""
+        return f"{self.name}, timing {self.timing}"
+
+    @property
     def measured_on(self) -> ReferenceTricycle:
         """Where the fastest joints were."""
         return PAPER_TRICYCLE

@@ -8,12 +8,9 @@ from pathlib import Path
 import matplotlib as mpl
 import numpy as np
 
-from fes_mj.budget.answer import answer
+from fes_mj.budget.answer import answer, riders_of
 from fes_mj.common.checks import Check, definitions
 from fes_mj.common.provenance import provenance
-from fes_mj.moments.joint_moments import GROUPS
-from fes_mj.muscles.drive import Muscles
-from fes_mj.muscles.riders import Riders, load_riders
 from fes_mj.verification.case import VerificationCase
 from fes_mj.verification.faults import Detection
 from fes_mj.verification.problems import Chain, compare_chains
@@ -59,12 +56,8 @@ def report_html(
 
 def for_a_rider(case: VerificationCase) -> tuple[str, str]:
     """Power of the drive's riders, W, and per the equally timed TRT's; of own moments no muscles are known."""
-    if isinstance(case.drive, Muscles):
-        riders: Riders | None = case.drive.riders
-    else:
-        riders = load_riders(case.drive.name) if case.drive.name in GROUPS else None
     own = case.cadence == case.design.linkage.cadence
-    both = answer(case.design, riders=riders, cadence=None if own else case.cadence)
+    both = answer(case.design, riders=riders_of(case.drive), cadence=None if own else case.cadence)
     power, ratio = both.rider_power, both.rider_ratio
     return power.text(1) if power else "not known", ratio.text(2) if ratio else "not known"
 

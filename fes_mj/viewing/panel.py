@@ -110,11 +110,7 @@ def _draw_power(figure: Figure, case: Case, answer: Answer | None) -> Axes:
 
 def _driver(drive: JointMoments | Muscles | StimulatedRider) -> str:
     """What drives the legs, in words."""
-    return (
-        f"joint moments {drive.name}"
-        if isinstance(drive, JointMoments)
-        else f"{drive.riders.name} muscles, timing {drive.timing}"
-    )
+    return f"joint moments {drive.name}" if isinstance(drive, JointMoments) else drive.driver
 
 
 def verdict(case: Case) -> str:

@@ -1,10 +1,12 @@
 """The two numbers of a design: rider by rider, against the single designs that were drawn."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import fes_mj
-from fes_mj.budget.answer import Answer, rider_powers
+from fes_mj.budget.answer import Answer, rider_powers, riders_of
 from fes_mj.budget.unknowns import drawn_designs
 from fes_mj.linkage.design_file import load_design
 from fes_mj.muscles.power import best_turn, muscle_turn
@@ -77,3 +79,10 @@ def test_what_is_not_known_says_why(riders: Riders) -> None:
     assert short.rider is not None
     assert "no tricycle to compare with" in short.missing
     assert short.summary()["rider_power_per_trt"] is None
+
+
+def test_riders_belong_to_the_moments_that_ship_and_to_no_others_of_their_name() -> None:
+    shipped, muscles = fes_mj.load_moments("p1p2"), fes_mj.load_muscles("p1p3")
+    assert riders_of(shipped) is load_riders("p1p2")
+    assert riders_of(replace(shipped, covariance=None)) is None
+    assert riders_of(muscles) is muscles.riders
