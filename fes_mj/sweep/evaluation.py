@@ -1,4 +1,4 @@
-"""What a sweep finds out about each of its points: statics in a batch, and a simulated turn each."""
+"""What a sweep finds out about each of its points: statics in a batch, a turn of riders and a simulated turn each."""
 
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -21,10 +21,10 @@ from fes_mj.statics.characteristics import motion_characteristics, power_charact
 from fes_mj.statics.cycles import Cycles, cycles
 from fes_mj.statics.drive import Drive, torque_source
 from fes_mj.statics.equilibrium import virtual_work
+from fes_mj.statics.muscle_static import MuscleStatic
 from fes_mj.statics.turn import turn_points
 from fes_mj.statics.validity import obstacles
 from fes_mj.statics.work_table import WorkTable, uncertain_table
-from fes_mj.sweep.stimulated import by_muscles
 from fes_mj.sweep.study import NAMES, Study
 
 if TYPE_CHECKING:
@@ -47,6 +47,7 @@ _CHARACTERISTICS = (
     *("transmission_angle_min_deg", "length_m", "height_m"),
 )
 _AT_ONCE = 50  # designs, for whose power over the turn arrays of a few megabytes are needed
+_OF_MUSCLES = ("power_mean_W", "power_sd_W", "work_per_turn_J", "extrapolated_share")  # another power than the moments'
 _DYNAMIC = {
     "simulated_power_mean_W": float,
     "loop_gap_max_m": float,
@@ -84,32 +85,30 @@ def evaluate(study: Study, chunk: int) -> Columns:
             rows = np.flatnonzero((columns["design"] == label) & (columns["moments"] == name))
             if rows.size:
                 values = {variable: column[rows] for variable, column in varied.items()}
-                results = _static(design, values, moments, len(rows))
+                batch = replaced(design, {variable: column[:, None] for variable, column in values.items()})
+                given = values.get("cadence_rpm")
+                rpm = np.broadcast_to(np.ravel(batch.linkage.cadence) / RPM if given is None else given, rows.shape)
+                results = _static(batch, rpm, moments)
                 drive = study.muscles[name] if study.muscles else moments
                 if isinstance(drive, Muscles):
-                    batch = replaced(design, {variable: column[:, None] for variable, column in values.items()})
-                    rpm = _each(results["cadence_rpm"], rows)
-                    results |= by_muscles(drive, batch, rpm, study.legs, _more(study))
+                    results |= _by_muscles(batch, rpm, drive, study)
                 elif study.characteristics:
-                    results |= _characteristics(design, values, drive, study.legs, results)
+                    results |= _characteristics(batch, rpm, drive, study.legs, results["why"])
                 if study.analysis == "dynamic":
-                    results |= _dynamic(design, values, drive, study, results["why"])
+                    results |= _dynamic(batch, given, drive, study, results["why"])
                 for key, column in results.items():
                     columns[key][rows] = column
     columns["why"][columns["why"] == ""] = None
     return columns
 
 
-def _static(design: Design, values: Columns, moments: JointMoments, count: int) -> Columns:
-    """Quasi-static results of a batch."""
-    batch = replaced(design, {name: column[:, None] for name, column in values.items()})
+def _static(batch: Design, rpm: FloatArray, moments: JointMoments) -> Columns:
+    """Quasi-static results of the points of a batch at their cadences, shape (points,)."""
     certain = moments.covariance is None
     turn = cycles(batch, WorkTable.of(moments) if certain else uncertain_table(moments))
-    rpm = values.get("cadence_rpm", np.ravel(batch.linkage.cadence) / RPM)
-    turns_per_s = turns_per_second(rpm * RPM)
-    why = _reasons(turn, rpm, count)
+    turns_per_s, why = turns_per_second(rpm * RPM), _reasons(turn, rpm)
     work = np.where((why == "")[:, None], turn.work, np.nan)
-    power = work * np.reshape(turns_per_s, (-1, 1))
+    power = work * turns_per_s[:, None]
     deviation = np.hypot(np.linalg.norm(power[:, 1:], axis=1), turn.outside_sd * turns_per_s)
     result: dict[str, Any] = {
         "cadence_rpm": rpm,
@@ -129,51 +128,63 @@ def _static(design: Design, values: Columns, moments: JointMoments, count: int) 
     return result
 
 
-def _characteristics(design: Design, values: Columns, moments: JointMoments, legs: int, statics: Columns) -> Columns:
-    """Of the points of a batch that have a power, of all legs together; statics: their quasi-static results."""
-    torque, rows = torque_map(moments), np.flatnonzero(statics["why"] == "")
-    result = {name: np.full(len(statics["why"]), np.nan) for name in _CHARACTERISTICS}
-    rpm = _each(statics["cadence_rpm"], statics["why"])
+def _characteristics(
+    batch: Design, rpm: FloatArray, moments: JointMoments, legs: int, why: NDArray[np.object_]
+) -> Columns:
+    """Of the points of a batch that have a power, of all legs together."""
+    torque, rows = torque_map(moments), np.flatnonzero(why == "")
+    result = {name: np.full(len(why), np.nan) for name in _CHARACTERISTICS}
     for start in range(0, len(rows), _AT_ONCE):
         block = rows[start : start + _AT_ONCE]
-        motion = solve(replaced(design, {name: column[block, None] for name, column in values.items()}))
-        cadence = rpm[block, None] * RPM
+        motion, cadence = solve(batch.taken(block)), rpm[block, None] * RPM
         power = all_legs(np.atleast_2d(cadence * virtual_work(motion, torque.along(motion, cadence))), legs)
         for name, value in (power_characteristics(power) | motion_characteristics(motion)).items():
             result[name][block] = value
     return result
 
 
-def _each(rpm: NDArray[Any], points: NDArray[Any]) -> FloatArray:
-    """Cadence of every one of the points, where it may be one for all."""
-    return np.broadcast_to(rpm, points.shape)
-
-
-def _reasons(turn: Cycles, rpm: NDArray[Any], count: int) -> NDArray[np.object_]:
-    """Why `fes_mj static` refuses each of the points: the first reason that holds, "" if none does, shape (count,)."""
-    why = np.full(count, "", object)
+def _reasons(turn: Cycles, rpm: FloatArray) -> NDArray[np.object_]:
+    """Why `fes_mj static` refuses each of the points: the first reason that holds, "" if none does."""
+    why = np.full(len(rpm), "", object)
     for reason, hindered in reversed(obstacles(turn, rpm * RPM)):
-        why[np.broadcast_to(hindered, count)] = reason
+        why[np.broadcast_to(hindered, len(rpm))] = reason
     return why
 
 
-def _dynamic(design: Design, values: Columns, drive: Drive, study: Study, why: NDArray[np.object_]) -> Columns:
+def _by_muscles(batch: Design, rpm: FloatArray, muscles: Muscles, study: Study) -> Columns:
+    """Results of the points of a batch that muscles drive, one after the other: each is a turn of every rider."""
+    result: Columns = {key: np.full(len(rpm), np.nan) for key in (*_OF_MUSCLES, *_more(study))}
+    why = np.full(len(rpm), "", object)
+    for row, speed in enumerate(rpm.tolist()):
+        design = batch.single(row)
+        try:
+            turn = MuscleStatic.solve(design, muscles.riders, speed * RPM, muscles.timing, muscles.duty, study.legs)
+        except InputError as error:
+            why[row] = str(error).removeprefix(f"{design.name}: ")
+            continue
+        summary = turn.summary()
+        for key, column in result.items():
+            column[row] = summary[key]
+    return result | {"why": why}
+
+
+def _dynamic(batch: Design, rpm: FloatArray | None, drive: Drive, study: Study, why: NDArray[np.object_]) -> Columns:
     """One simulated turn of every point that has a power, the loop under a torque map in machine code.
 
-    Of muscles it is the most probable rider. Why a run breaks down, is refused or does not agree with statics goes to
-    `why`.
+    rpm: cadences, if they are not the designs' own. Of muscles it is the most probable rider. Why a run breaks down, is
+    refused or does not agree with statics goes to `why`.
     """
     from fes_mj.simulation.bench import simulate
 
     result = {name: np.full(len(why), np.nan) for name in _DYNAMIC}
     for row in np.flatnonzero(why == ""):
-        varied = replaced(design, {name: float(column[row]) for name, column in values.items()})
-        speed = crank_speed(varied, float(values["cadence_rpm"][row]) * RPM if "cadence_rpm" in values else None)
+        design = batch.single(int(row))
+        speed = crank_speed(design, None if rpm is None else float(rpm[row]) * RPM)
         try:
-            torque = torque_source(drive, varied, speed)
-            static = _power(varied, torque, speed)
+            torque = torque_source(drive, design, speed)
+            static = _power(design, torque, speed)
             run = simulate(
-                varied,
+                design,
                 drive,
                 cadence=speed,
                 timestep=study.timestep,
