@@ -1,5 +1,6 @@
 """The ways a request can be refused; the command line turns each into one message and an exit code."""
 
+from collections.abc import Collection
 from importlib import import_module
 from types import ModuleType
 
@@ -44,6 +45,12 @@ class UnstableError(RuntimeError):
         ...
     fes_mj.common.errors.UnstableError: d1: the simulation became unstable with a time step of 0.216 ms; ...
     """
+
+
+def require_one_of(name: str, value: object, allowed: Collection[str]) -> None:
+    """Raise InputError for a word that is none of those allowed."""
+    if value not in allowed:
+        raise InputError(f"{name} is {value!r}; it must be one of {', '.join(allowed)}")
 
 
 def require_extra(extra: str, *modules: str) -> ModuleType:

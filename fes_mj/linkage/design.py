@@ -6,14 +6,14 @@ Robotics 2022, 11(1), 26; outside this module and the design files, words are us
 """
 
 import math
-from collections.abc import Callable, Collection
+from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fes_mj.common.errors import InputError
+from fes_mj.common.errors import require_one_of
 
 WHEEL_DIAMETER = 0.66  # m, paper Section 3
 TRICYCLE_SPEED = 5.71 / 3.6  # m/s, paper Section 3
@@ -63,12 +63,6 @@ ARCHITECTURES = {
 }
 
 
-def _require_one_of(name: str, value: str, allowed: Collection[str]) -> None:
-    """Raise InputError for a word that is none of those allowed."""
-    if value not in allowed:
-        raise InputError(f"{name} is {value!r}; it must be one of {', '.join(allowed)}")
-
-
 @dataclass(frozen=True)
 class Linkage:
     """Dimensions of one linkage, lengths in m and angles in rad; a TRT has no rocker, coupler or pedal arm.
@@ -95,8 +89,8 @@ class Linkage:
     branch: str = "left"  # side of pivot -> crank pin on which the rocker joint lies, one of BRANCHES
 
     def __post_init__(self) -> None:
-        _require_one_of("kind", self.kind, ARCHITECTURES)
-        _require_one_of("branch", self.branch, BRANCHES)
+        require_one_of("kind", self.kind, ARCHITECTURES)
+        require_one_of("branch", self.branch, BRANCHES)
 
     @property
     def architecture(self) -> Architecture:
@@ -145,7 +139,7 @@ class Rider:
     leg_mass_factor: float = 1.0  # on the masses of thigh, shank and foot; see data/riders.toml
 
     def __post_init__(self) -> None:
-        _require_one_of("sex", self.sex, SEXES)
+        require_one_of("sex", self.sex, SEXES)
 
 
 @dataclass(frozen=True)

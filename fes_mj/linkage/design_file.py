@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from fes_mj.common.arrays import FloatArray
-from fes_mj.common.errors import InputError
+from fes_mj.common.errors import InputError, require_one_of
 from fes_mj.common.reading import DATA, Section, is_list, is_number, read_toml
 from fes_mj.common.text import printable
 from fes_mj.linkage.design import ARCHITECTURES, BRANCHES, SEXES, Design, Frame, Linkage, Rider
@@ -45,8 +45,7 @@ def _read(path: Path) -> Design:
 
 def design_path(source: str | Path, dims: str = "identified") -> Path:
     """The file that load_design reads. Raises InputError for a name that is neither a design's nor a file's."""
-    if dims not in DIMENSIONS:
-        raise InputError(f"dims is {dims!r}; it must be one of {', '.join(DIMENSIONS)}")
+    require_one_of("dims", dims, DIMENSIONS)
     if source in DESIGNS:
         return _FOLDER / dims / f"{source}.toml"
     path = Path(source)

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from fes_mj.common.brief import Brief
-from fes_mj.common.errors import InputError
+from fes_mj.common.errors import require_one_of
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.torque_source import TorqueSource
 from fes_mj.moments.joint_moments import JointMoments
@@ -31,8 +31,7 @@ class Muscles(Brief):
     duty: float = DUTY
 
     def __post_init__(self) -> None:
-        if self.timing not in RULES:
-            raise InputError(f"timing is {self.timing!r}; it must be one of {', '.join(RULES)}")
+        require_one_of("timing", self.timing, RULES)
 
     @property
     def brief(self) -> str:

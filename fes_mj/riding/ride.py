@@ -8,7 +8,7 @@ import numpy as np
 
 from fes_mj.common.arrays import FloatArray
 from fes_mj.common.brief import Brief
-from fes_mj.common.errors import InputError
+from fes_mj.common.errors import InputError, require_one_of
 from fes_mj.common.units import KMH
 from fes_mj.linkage.design import TRICYCLE_SPEED, WHEEL_DIAMETER, Design
 from fes_mj.linkage.inertia import GRAVITY, CrankInertia, inertias
@@ -108,8 +108,7 @@ class Ride(Brief):
 
         InputError also for a transmission that is none.
         """
-        if self.transmission not in TRANSMISSIONS:
-            raise InputError(f"transmission is {self.transmission!r}; it must be one of {', '.join(TRANSMISSIONS)}")
+        require_one_of("transmission", self.transmission, TRANSMISSIONS)
         if isinstance(self.drive, JointMoments):
             for leg in TWO_LEGS:
                 turning_in_range(self.design, self.drive.of_leg(leg.prefix).measured_on)

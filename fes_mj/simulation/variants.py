@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from fes_mj.common.errors import InputError
+from fes_mj.common.errors import InputError, require_one_of
 from fes_mj.common.units import RPM
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.joints import JOINTS
@@ -49,8 +49,7 @@ def variant_options(variants: Iterable[str]) -> dict[str, Any]:
     options: dict[str, Any] = {}
     said: dict[str, str] = {}
     for name in variants:
-        if name not in VARIANTS:
-            raise InputError(f"variant is {name!r}; it must be one of {', '.join(VARIANTS)}")
+        require_one_of("variant", name, VARIANTS)
         for key, value in VARIANTS[name].items():
             if options.setdefault(key, value) != value:
                 raise InputError(f"the variants {said[key]} and {name} exclude each other; give one of them")

@@ -3,7 +3,7 @@
 from functools import cache
 from typing import NamedTuple
 
-from fes_mj.common.errors import InputError
+from fes_mj.common.errors import require_one_of
 from fes_mj.common.reading import DATA, Section, read_toml
 
 
@@ -49,8 +49,7 @@ def materials() -> tuple[str, ...]:
 
 def material(name: str) -> Material:
     """What links are made of, by its name. Raises InputError for one that is not known."""
-    if name not in materials():
-        raise InputError(f"material is {name!r}; it must be one of {', '.join(materials())}")
+    require_one_of("material", name, materials())
     return Material(**_tables().section("link").content[name])
 
 
