@@ -27,7 +27,7 @@ from fes_mj.linkage.kinematics import solve  # noqa: E402
 from fes_mj.linkage.legs import ONE_LEG  # noqa: E402
 from fes_mj.moments.torque_map import torque_map  # noqa: E402
 from fes_mj.simulation.compiled import compiled_loop  # noqa: E402
-from fes_mj.simulation.mjcf import ModelOptions, build_mjcf  # noqa: E402
+from fes_mj.simulation.mjcf import UNDRAWN, build_mjcf  # noqa: E402
 from fes_mj.simulation.stepping import (  # noqa: E402
     PRE_ROLL,
     Sensors,
@@ -100,7 +100,7 @@ def drive(mbs: Any, joint: str, markers: list[int], zero: float) -> None:
 def our_turn(design: fes_mj.Design, make_loop: Any) -> Turn:
     """The project's own run, its model compiled."""
     cadence, loop = design.linkage.cadence, make_loop(torque_map(MOMENTS), ONE_LEG)
-    model = build_mjcf(design, options=ModelOptions(drawn=False)).compile()
+    model = build_mjcf(design, options=UNDRAWN).compile()
 
     def turn(steps: int) -> tuple[Any, Any]:
         model.opt.timestep = 2 * np.pi / cadence / steps

@@ -38,14 +38,14 @@ from fes_mj.optimization.problem import Problem, make_problem
 from fes_mj.optimization.search import BudgetSpentError, Search, differential
 from fes_mj.simulation.bench import BenchOptions, simulate
 from fes_mj.simulation.compiled import compiled_loop
-from fes_mj.simulation.mjcf import ModelOptions, build_mjcf
+from fes_mj.simulation.mjcf import UNDRAWN, build_mjcf
 from fes_mj.simulation.time_step import steps_per_turn
 from fes_mj.statics.cycles import CYCLE_POINTS, cycles, joint_speeds
 from fes_mj.statics.work_table import WorkTable
 
 DESIGNS, TURNS, THREADS = 2000, 16, 2
 MOMENTS = load_moments("p1p2")
-UNDRAWN, MACHINE_CODE = ModelOptions(drawn=False), BenchOptions(make_loop=compiled_loop)
+MACHINE_CODE = BenchOptions(make_loop=compiled_loop)
 
 
 def population(design: Design, count: int, step: float = 0.002) -> np.ndarray:

@@ -17,6 +17,7 @@ from fes_mj.muscles.drive import load_muscles
 from fes_mj.riding.ride import Ride
 from fes_mj.riding.stimulated import stimulated_rider
 from fes_mj.riding.trace import ride as ride_by_equation
+from fes_mj.simulation.mjcf import UNDRAWN
 from fes_mj.simulation.road import ride_on_road
 from fes_mj.simulation.road_mjcf import build_road_mjcf
 
@@ -32,7 +33,7 @@ def rates(name: str, drive: str) -> dict[str, np.ndarray]:
     moving = load_moments("p1p2") if drive == "moments" else stimulated_rider(load_muscles("p1p2"), design)
     ride, name = Ride(design, moving, duration=DURATION), f"{name} by {drive}"
     step = RideCase(ride).simulation.timestep
-    model, steps = build_road_mjcf(ride, step, drawn=False).compile(), round(DURATION / step)
+    model, steps = build_road_mjcf(ride, step, options=UNDRAWN).compile(), round(DURATION / step)
 
     def bare() -> None:
         data, step = mujoco.MjData(model), mujoco.mj_step

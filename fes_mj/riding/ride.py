@@ -16,7 +16,7 @@ from fes_mj.linkage.legs import TWO_LEGS
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.riding.leg_table import LegTable, leg_table
 from fes_mj.riding.stimulated import StimulatedRider
-from fes_mj.statics.turn import quasi_static
+from fes_mj.statics.turn import LegTurns
 from fes_mj.statics.validity import turning_in_range
 
 TRANSMISSIONS = ("freewheel", "fixed")
@@ -162,9 +162,10 @@ def balancing_slope(ride: Ride, speed: float = TRICYCLE_SPEED) -> float:
     cadence = speed / ride.travel
     drive = ride.drive
     if isinstance(drive, JointMoments):
-        power = sum(quasi_static(ride.design, drive.of_leg(leg.prefix), cadence).power_mean for leg in TWO_LEGS)
+        of_a_leg = LegTurns.solve(ride.design, drive, cadence, len(TWO_LEGS)).power_mean
     else:
-        power = len(TWO_LEGS) * drive.power_mean(ride.design, cadence)
+        of_a_leg = drive.power_mean(ride.design, cadence)
+    power = len(TWO_LEGS) * of_a_leg
     level = replace(ride, road=replace(ride.road, slope=0.0)).load
     rolling = ride.road.rolling_resistance
     # rolling cos b + sin b = sqrt(1 + rolling^2) sin(b + atan rolling)

@@ -88,7 +88,7 @@ class ModelOptions:
     drawn: bool = True
 
 
-COMPLETE = ModelOptions()
+COMPLETE, UNDRAWN = ModelOptions(), ModelOptions(drawn=False)
 
 
 def build_mjcf(

@@ -16,6 +16,7 @@ from fes_mj.riding.ride import Ride
 from fes_mj.riding.trace import Trace, ride as ride_by_equation
 from fes_mj.simulation.appearance import Spec
 from fes_mj.simulation.bench import joint_drives
+from fes_mj.simulation.mjcf import UNDRAWN
 from fes_mj.simulation.road_control import RoadControl, act, memory_of, road_control
 from fes_mj.simulation.road_mjcf import DRIVETRAIN, ROAD, TIMESTEP, build_road_mjcf, start_state
 from fes_mj.simulation.stepping import Loop, Run, Sensors, controlled_loop, energy, run_loop
@@ -127,7 +128,7 @@ def ride_on_road(
     trace.ride, UnstableError if the integration breaks down.
     """
     ride.require_possible()
-    spec = build_road_mjcf(ride, timestep, drawn=False)
+    spec = build_road_mjcf(ride, timestep, options=UNDRAWN)
     edit(spec)
     model, loop = spec.compile(), make_loop(control or partial(road_control, ride))
     data = mujoco.MjData(model)

@@ -1,7 +1,8 @@
 """The MJCF model of the ride: a tricycle that slides along the road, its legs hung on it; nothing holds the cadence."""
 
 import math
-from typing import TYPE_CHECKING, Literal
+from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import mujoco
 import numpy as np
@@ -12,6 +13,7 @@ from fes_mj.linkage.legs import TWO_LEGS
 from fes_mj.simulation.appearance import Spec
 from fes_mj.simulation.bench import add_motor_sensors
 from fes_mj.simulation.mjcf import (
+    COMPLETE,
     INTEGRATORS,
     LOOP_SOLIMP,
     LOOP_SOLREF,
@@ -41,22 +43,18 @@ def build_road_mjcf(
     timestep: float = TIMESTEP,
     *,
     integrator: str = "discrete",
-    drawn: bool = True,
-    driven: bool = True,
-    compatible: bool = False,
-    anchors: Literal["sites", "bodies"] = "sites",
+    options: ModelOptions = COMPLETE,
 ) -> Spec:
-    """The model of build_mjcf with both legs (same options), set on the road at the ride's start.
+    """The model of build_mjcf with both legs, set on the road at the ride's start.
 
-    integrator: one of mjcf.INTEGRATORS; the scheme of ride_on_road is made for `discrete`. compatible: without what MJX
-    does not know, the sensor of the freewheel.
+    integrator: one of mjcf.INTEGRATORS; the scheme of ride_on_road is made for `discrete`. options: as of build_mjcf,
+    but that nothing holds the cadence; if `compatible` without what MJX does not know, the sensor of the freewheel.
 
     The tricycle gets its mass and the slide joint `road`; rims are its armature, rolling resistance its friction, air
     its damping. The slope tilts gravity. The tendon `drivetrain` is road less crank: a fixed gear holds its length; a
     freewheel only keeps it from becoming shorter, and whoever steps the model raises that limit to the length reached.
     """
-    options = ModelOptions(driven=False, drawn=drawn, anchors=anchors)
-    spec = build_mjcf(ride.design, timestep=timestep, legs=len(TWO_LEGS), options=options)
+    spec = build_mjcf(ride.design, timestep=timestep, legs=len(TWO_LEGS), options=replace(options, driven=False))
     spec.option.timestep, spec.option.integrator = timestep, INTEGRATORS[integrator]
     spec.comment = f"{ride.name}: both legs on a tricycle that rides"
     spec.option.gravity = (GRAVITY * math.sin(ride.road.angle), 0.0, -GRAVITY * math.cos(ride.road.angle))
@@ -69,9 +67,9 @@ def build_road_mjcf(
     slide.damping = (0.0, load.drag, 0.0)
     slide.solref_friction, slide.solimp_friction = LOOP_SOLREF, LOOP_SOLIMP
     _add_drivetrain(spec, ride)
-    if driven:
+    if options.driven:
         add_motors(spec, TWO_LEGS)
-    _add_sensors(spec, ride, driven, compatible)
+    _add_sensors(spec, ride, options)
     spec.delete(spec.key("start"))
     add_keyframe(spec, start_state(ride))
     return spec
@@ -91,13 +89,13 @@ def _add_drivetrain(spec: Spec, ride: "ride.Ride") -> None:
         tendon.solref_limit, tendon.solimp_limit = LOOP_SOLREF, LOOP_SOLIMP
 
 
-def _add_sensors(spec: Spec, ride: "ride.Ride", driven: bool, compatible: bool) -> None:
+def _add_sensors(spec: Spec, ride: "ride.Ride", options: ModelOptions) -> None:
     kinds, objects = mujoco.mjtSensor, mujoco.mjtObj
     for name, kind in ((f"{ROAD}_angle", kinds.mjSENS_JOINTPOS), (f"{ROAD}_speed", kinds.mjSENS_JOINTVEL)):
         spec.add_sensor(name=name, type=kind, objtype=objects.mjOBJ_JOINT, objname=ROAD)
-    if driven:
+    if options.driven:
         add_motor_sensors(spec, TWO_LEGS)
-    if not ride.fixed and not compatible:
+    if not ride.fixed and not options.compatible:
         spec.add_sensor(
             name=DRIVETRAIN, type=kinds.mjSENS_TENDONLIMITFRC, objtype=objects.mjOBJ_TENDON, objname=DRIVETRAIN
         )

@@ -21,7 +21,7 @@ from fes_mj.simulation.native_muscles import native_muscles
 from fes_mj.simulation.road_mjcf import build_road_mjcf
 from fes_mj.simulation.time_step import steps_per_turn
 from fes_mj.statics.drive import Drive
-from fes_mj.statics.turn import quasi_static
+from fes_mj.statics.turn import LegTurns
 
 # Variant -> what it sets: what the crank meets (servo, if nothing is said), how the tricycle of the road is geared, how
 # many legs, or a field of ModelOptions. Several may be combined unless they set the same thing differently.
@@ -89,15 +89,15 @@ def _muscle_model(design: Design, drive: Muscles, cadence: float, content: dict[
 def _moment_model(design: Design, moments: JointMoments, cadence: float, content: dict[str, Any]) -> Spec:
     crank, transmission = content.pop("crank", "servo"), content.pop("transmission", "freewheel")
     legs, timestep = content.pop("legs", 1), None
+    model = ModelOptions(held=crank == "servo", **content)
     if crank == "road":
         from fes_mj.riding.ride import Ride  # with machine code, of which other variants need nothing
 
         ride = Ride(design, moments, transmission=transmission)
-        spec = build_road_mjcf(replace(ride, launch=cadence * ride.travel), integrator=LADEN, **content)
+        spec = build_road_mjcf(replace(ride, launch=cadence * ride.travel), integrator=LADEN, options=model)
     else:
         if crank == "brake":  # the flywheel lets no turn be much faster
             timestep = 2 * math.pi / cadence / steps_per_turn(design, cadence)
-        model = ModelOptions(held=crank == "servo", **content)
         spec = build_mjcf(design, cadence=cadence, timestep=timestep, legs=legs, options=model)
     if crank == "brake":
         _add_brake(spec, design, moments, cadence, legs)
@@ -111,7 +111,7 @@ def _add_brake(spec: Spec, design: Design, moments: JointMoments, cadence: float
     The brake's moment grows with the crank's speed. The work per turn of moments that do not depend on speed then asks
     for just this cadence, as a mean over the crank angle.
     """
-    power = sum(quasi_static(design, moments.of_leg(leg.prefix), cadence).power_mean for leg in LEGS[legs])
+    power = legs * LegTurns.solve(design, moments, cadence, legs).power_mean
     if power <= 0:
         raise InputError(
             f"{design.name}, {moments.name}: the moments deliver {power:.3g} W at {cadence / RPM:.4g} rpm, so there is "

@@ -89,15 +89,6 @@ class Reversals(NamedTuple):
     sign: FloatArray
 
 
-class _Block(NamedTuple):
-    """A turn of some designs: reach of the leg (m), swing of the thigh (rad), joint angles (rad) and reversals."""
-
-    reach: FloatArray
-    swing: FloatArray
-    angles: PerJoint[FloatArray]
-    reversals: PerJoint[Reversals]
-
-
 def cycles(design: Design, table: WorkTable, points: int = CYCLE_POINTS) -> Cycles:
     """Turn a batch of designs: any number of the linkage or the rider may be an array of shape (designs, 1).
 
@@ -105,16 +96,14 @@ def cycles(design: Design, table: WorkTable, points: int = CYCLE_POINTS) -> Cycl
     """
     crank_angle = np.linspace(0, 2 * np.pi, points, endpoint=False)
     size = max(1, BLOCK_POSITIONS // points)
-    blocks = [_block(design.taken(slice(start, start + size)), crank_angle) for start in range(0, design.size, size)]
-    turning = batch_turning(
-        design,
-        np.concatenate([block.reach for block in blocks]),
-        np.concatenate([block.swing for block in blocks]),
-    )
+    blocks = (_block(design.taken(slice(start, start + size)), crank_angle) for start in range(0, design.size, size))
+    reach, angles, turned = zip(*blocks, strict=True)
+    swing = [np.ptp(block.hip, axis=1) for block in angles]
+    turning = batch_turning(design, np.concatenate(reach), np.concatenate(swing))
     turns = turning.turns
 
     def of_joint(joint: str) -> JointTurn:
-        parts = [block.reversals[joint] for block in blocks]
+        parts = [block[joint] for block in turned]
         rows = np.concatenate([part.design + size * number for number, part in enumerate(parts)])
         angle, sign = (np.concatenate(columns) for columns in zip(*(part[1:] for part in parts), strict=True))
         return _joint_turn(joint, Reversals(rows, angle, sign), turns, table)
@@ -125,7 +114,7 @@ def cycles(design: Design, table: WorkTable, points: int = CYCLE_POINTS) -> Cycl
         joints,
         work=joints.knee.work + joints.hip.work,
         outside_sd=np.sqrt(joints.knee.variance + joints.hip.variance),
-        angles=[block.angles for block in blocks],
+        angles=[*angles],
         reference=table.measured_on,
     )
 
@@ -154,12 +143,13 @@ def _joint_turn(joint: str, reversals: Reversals, turns: BoolArray, table: WorkT
     return JointTurn(low, high, travel, number, work, variance)
 
 
-def _block(design: Design, crank_angle: FloatArray) -> _Block:
+def _block(design: Design, crank_angle: FloatArray) -> tuple[FloatArray, PerJoint[FloatArray], PerJoint[Reversals]]:
+    """A turn of some designs: reach of the leg (m), joint angles (rad) and reversals."""
     points = positions(design, crank_angle)
     reach = leg_reach(design, points["pedal"])
     closes = (reach > 0)[:, None]
     angles = joint_angles(design, points).map(lambda angle: np.where(closes, angle, 0.0))  # or it stays at rest
-    return _Block(reach, np.ptp(angles.hip, axis=1), angles, angles.map(reversals))
+    return reach, angles, angles.map(reversals)
 
 
 def reversals(angle: FloatArray) -> Reversals:
