@@ -90,7 +90,7 @@ def optimize(
         lambda: _print(winner, optimum),
         report=report,
     )
-    return 0 if winner.agrees else 1
+    return 0 if winner.case.agrees else 1
 
 
 def _search(kind: str, moments: fes_mj.JointMoments, options: SearchOptions, findings: Findings | None) -> Optimum:
@@ -174,7 +174,7 @@ def _print(winner: Winner | MuscleWinner, optimum: Optimum) -> None:
         conclude(False, "Beware", f": {'; '.join(doubts)}.")
     if optimum.repair:
         say(f"the start did not keep the limits and was repaired: {optimum.repair}")
-    title = f"{design.name}: {design.linkage.title}; {winner.driver}"
+    title = f"{design.name}: {design.linkage.title}; {winner.case.static.driver}"
     print_table(f"{title}; {optimum.method}, {optimum.evaluations:,} evaluations", ("", "value"), winner.rows)
     print_table("Constraints", ("constraint", "value", "limit", ""), optimum.limit_rows)
     if people.count > 1:

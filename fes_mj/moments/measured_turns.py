@@ -207,22 +207,21 @@ def _joint_angles(description: Description, recording: Recording, table: Table) 
         asked = key in description.section.content or (joint == "knee" and bool(description.kinematics))
         if asked or column in table.header:
             given = table.column(column)
-            header = {None: None, True: "rad", False: "deg"}[table.says_radians]
             unit = "rad" if np.abs(given).max(initial=0.0) < _LARGEST_RADIANS else "deg"
             radians = ANGLE_UNITS[unit] * given
             if joint not in recording.angles:
                 sense = angle_sense(joint, radians, description.convention.angle[joint], description.measured_on)
                 low, high = np.degrees([radians.min(), radians.max()])
-                recording.angles[joint] = CountedAngle(sense, (low, high), unit, header)
+                recording.angles[joint] = CountedAngle(sense, (low, high), unit, table.angle_unit)
             angles[joint] = recording.angles[joint].sense.extending(radians)
     return angles
 
 
 def _angle_unit(description: Description, table: Table) -> str:
     """Unit of the crank angle: as declared, otherwise as the header of an OpenSim file says, otherwise deg."""
-    said = {None: "deg", True: "rad", False: "deg"}[table.says_radians]
+    said = table.angle_unit or "deg"
     unit = description.section.choice("angle_unit", ANGLE_UNITS, said)
-    if table.says_radians is not None and unit != said:
+    if table.angle_unit and unit != said:
         raise InputError(
             f"{table.path}: the header says that angles are in {said}, moments.angle_unit of "
             f"{description.section.path} says {unit}; correct one of them"

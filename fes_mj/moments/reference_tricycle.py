@@ -67,6 +67,10 @@ class ReferenceTricycle:
         direction = np.where(np.asarray(rate) >= 0, 1.0, -1.0)
         return np.asarray(inverse(self.inverse_geometry[joint], angle, direction))
 
+    def parameters(self, joint: str) -> tuple[tuple[float, ...], float, float]:
+        """What torque_map.scalar_source must know of this tricycle."""
+        return (self.inverse_geometry[joint], *self.ranges[joint])
+
     def around(self, joint: str, angle: Any) -> FloatArray:
         """Angles, rad, any shape, by whole turns so that they lie within half a turn of the range's middle."""
         middle = sum(self.ranges[joint]) / 2

@@ -89,10 +89,10 @@ class Table:
         return replace(self, lines=[self.lines[row] for row in rows], rows=[self.rows[row] for row in rows])
 
     @cached_property
-    def says_radians(self) -> bool | None:
-        """Whether an OpenSim header says that angles are in radians; None if it does not say."""
+    def angle_unit(self) -> str | None:
+        """Unit of angles, rad or deg, by the header of an OpenSim file; None if it does not say."""
         declared = re.search(r"^\s*inDegrees\s*=\s*(yes|no)\s*$", self.preamble, re.IGNORECASE | re.MULTILINE)
-        return declared.group(1).lower() == "no" if declared else None
+        return {"yes": "deg", "no": "rad"}[declared.group(1).lower()] if declared else None
 
     @cached_property
     def time_column(self) -> str:

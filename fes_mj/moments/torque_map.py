@@ -18,7 +18,7 @@ from fes_mj.linkage.legs import Leg
 from fes_mj.linkage.torque_source import LegControl
 from fes_mj.moments.fourier import fourier
 from fes_mj.moments.joint_moments import JointMoments
-from fes_mj.moments.reference_tricycle import INVERSES, ReferenceTricycle
+from fes_mj.moments.reference_tricycle import INVERSES
 
 TABLE_SIZE = 3600  # moments are interpolated linearly on a uniform grid of 0.1 deg
 GRID = np.arange(TABLE_SIZE + 2) * (2 * np.pi / TABLE_SIZE)  # from top dead centre; two more for rounding at the end
@@ -59,7 +59,7 @@ class TorqueMap:
 
     def feedback(self, joint: str) -> Callable[[float, float], float]:
         """The same map for plain floats, (angle, rate) -> moment; twenty times faster for one value at a time."""
-        return partial(scalar_map(joint, _acos), self.parameters(joint), self.table[joint].tolist())
+        return partial(scalar_map(joint, _acos), self.reference.parameters(joint), self.table[joint].tolist())
 
     def control(self, leg: Leg, timestep: float = 0.0) -> LegControl:
         """The moments of a leg by its state alone (TorqueSource.control)."""
@@ -68,10 +68,6 @@ class TorqueMap:
         return LegControl(
             lambda _, knee, hip, knee_rate, hip_rate: (knee_moment(knee, knee_rate), hip_moment(hip, hip_rate))
         )
-
-    def parameters(self, joint: str) -> tuple[tuple[float, ...], float, float]:
-        """What scalar_map must know of the tricycle of the measurement."""
-        return source_parameters(self.reference, joint)
 
 
 @cache
@@ -85,11 +81,6 @@ def torque_map(moments: JointMoments) -> TorqueMap:
     return TorqueMap(moments)
 
 
-def source_parameters(reference: ReferenceTricycle, joint: str) -> tuple[tuple[float, ...], float, float]:
-    """What scalar_source must know of the tricycle of the measurement."""
-    return (reference.inverse_geometry[joint], *reference.ranges[joint])
-
-
 def _acos(value: float) -> float:
     try:
         return math.acos(value)
@@ -100,7 +91,7 @@ def _acos(value: float) -> float:
 def scalar_source(
     joint: str, acos: Callable[[float], float] = _acos, compiled: Callable[[Any], Any] = lambda function: function
 ) -> Callable[[Any, float, float], float]:
-    """ReferenceTricycle.source_angle for plain floats: (source_parameters, angle, rate) -> rad.
+    """ReferenceTricycle.source_angle for plain floats: (its parameters, angle, rate) -> rad.
 
     acos: takes a rounding error beyond -1 or 1. compiled: what turns Python functions into machine code.
     """
@@ -121,7 +112,7 @@ def scalar_source(
 def scalar_map(
     joint: str, acos: Callable[[float], float], compiled: Callable[[Any], Any] = lambda function: function
 ) -> Callable[[Any, Any, float, float], float]:
-    """The map for plain floats: (source_parameters, table, angle, rate) -> moment; acos, compiled: of scalar_source."""
+    """The map for plain floats: (parameters, table, angle, rate) -> moment; the rest as for scalar_source."""
     source, scale = scalar_source(joint, acos, compiled), TABLE_SIZE / (2 * math.pi)
 
     def moment(where: Any, table: Any, angle: float, rate: float) -> float:

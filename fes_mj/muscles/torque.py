@@ -13,7 +13,7 @@ from fes_mj.linkage.joints import JOINTS, PerJoint
 from fes_mj.linkage.kinematics import Motion
 from fes_mj.linkage.legs import Leg
 from fes_mj.linkage.torque_source import LegControl
-from fes_mj.moments.torque_map import scalar_source, source_parameters
+from fes_mj.moments.torque_map import scalar_source
 from fes_mj.muscles.activation import answer
 from fes_mj.muscles.anatomy import GROUPS
 from fes_mj.muscles.by_joint import LEADING, TURNED, JointLed
@@ -121,7 +121,7 @@ class MuscleTorque:
         if self.stimulated.windows is not None:
             return lambda crank, *_: [stimulation(stimulus, group, crank - lag) for group in groups]
         sources, trial = [scalar_source(joint) for joint in JOINTS], self.riders.measured_on
-        where = [source_parameters(trial, joint) for joint in JOINTS]
+        where = [trial.parameters(joint) for joint in JOINTS]
         leading = [JOINTS.index(LEADING[group]) for group in GROUPS]
         last = [rate.item() for rate in kinematics.solve(self.design, -lag - _FINE_TURN[[1]]).joint_rate]
 

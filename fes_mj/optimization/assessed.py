@@ -34,16 +34,6 @@ class Assessed:
     def design(self) -> Design:
         return self.case.design
 
-    @property
-    def driver(self) -> str:
-        """What moves the legs, in a few words."""
-        return self.case.static.driver
-
-    @property
-    def agrees(self) -> bool:
-        """Whether dynamics and statics do."""
-        return self.case.agrees
-
     @cached_property
     def answer(self) -> Answer:
         """Both numbers: as the paper assumes where moments drive, and for a rider whose muscles are known."""
@@ -79,7 +69,7 @@ class Assessed:
 
     def doubts(self, optimum: "Optimum") -> list[str]:
         """Why it may not be what was sought: what it leaves of the limits of what can be built, edges of the search."""
-        return [*self.build.doubts(optimum.problem.limits.build or COMMON), *optimum.edges]
+        return [*self.build.broken(optimum.problem.limits.build or COMMON).values(), *optimum.edges]
 
     def summary(self, optimum: "Optimum") -> dict[str, Any]:
         """The result as JSON names and units it; optimum: of the search that found the design."""

@@ -167,10 +167,6 @@ class Buildability:
         }
         return {name: words for name, (leaves, words) in sayings.items() if leaves}
 
-    def doubts(self, limits: BuildLimits = COMMON) -> list[str]:
-        """In words, what of it leaves the limits."""
-        return [*self.broken(limits).values()]
-
     @property
     def rows(self) -> list[tuple[str, str]]:
         """As text."""

@@ -95,7 +95,7 @@ def compiled_loop(torque: TorqueSource, legs: tuple[Leg, ...]) -> Loop:
     if torque.moments.left is not None:
         raise ValueError("the compiled loop takes the same moments for both legs")
     drives = joint_drives(legs)
-    knee, hip = ((torque.parameters(joint), torque.table[joint]) for joint in JOINTS)
+    knee, hip = ((torque.reference.parameters(joint), torque.table[joint]) for joint in JOINTS)
     kinds = np.array([JOINTS.index(joint) for joint in drives.values()])
 
     def arguments(model: mujoco.MjModel) -> tuple[Any, ...]:

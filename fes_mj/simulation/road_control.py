@@ -59,17 +59,11 @@ class Memory(NamedTuple):
     felt: FloatArray
 
 
-_NONE = np.zeros(0)
 _NO_MUSCLES = LegMuscles(
     group=np.zeros(0, int),
     knee_inside=np.zeros(0, bool),
     lengths=np.zeros((0, 1, 1)),
-    straight=_NONE,
-    force=_NONE,
-    optimal=_NONE,
-    slack=_NONE,
-    thickness=_NONE,
-    max_speed=_NONE,
+    **dict.fromkeys(("straight", "force", "optimal", "slack", "thickness", "max_speed"), np.zeros(0)),
     rise=1.0,
     fall=1.0,
     delay=0.0,

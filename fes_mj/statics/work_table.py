@@ -53,7 +53,7 @@ class WorkTable:
         for legs that were measured on different tricycles.
         """
         maps = [[torque_map(leg) for leg in one.of_legs] for one in moments]
-        if len({tuple(torque.parameters(joint) for joint in JOINTS) for legs in maps for torque in legs}) > 1:
+        if len({tuple(torque.reference.parameters(joint) for joint in JOINTS) for legs in maps for torque in legs}) > 1:
             names = ", ".join(leg.name for one in moments for leg in one.of_legs)
             raise InputError(f"{names}: moments measured on different tricycles have no angles in common; give one")
         return cls.tabulated(

@@ -59,6 +59,6 @@ def test_the_map_of_floats_is_the_map_of_arrays(joint: str, moments: fes_mj.Join
     angles, table = np.linspace(1.0, 2.4, 201), torque_map.table[joint]
     for rate in (-1.0, 0.0, 1.0):
         expected = torque_map.moment(joint, angles, rate)
-        assert [scalar(torque_map.parameters(joint), table, angle, rate) for angle in angles] == pytest.approx(
-            list(expected), abs=1e-9
-        )
+        assert [
+            scalar(torque_map.reference.parameters(joint), table, angle, rate) for angle in angles
+        ] == pytest.approx(list(expected), abs=1e-9)

@@ -24,7 +24,7 @@ def winner() -> MuscleWinner:
 def test_the_most_probable_rider_is_simulated(winner: MuscleWinner) -> None:
     run = fes_mj.simulate(TRT, Muscles(RIDERS))
     likeliest = int(np.argmax(RIDERS.likelihood))
-    assert winner.agrees
+    assert winner.case.agrees
     assert winner.case.simulation.power_mean == run.power_mean
     assert run.power_mean == pytest.approx(winner.turn.powers[likeliest], rel=1e-3)
 
