@@ -14,7 +14,7 @@ import numpy as np
 
 from fes_mj.common.arrays import FloatArray
 from fes_mj.common.errors import require_extra
-from fes_mj.common.machine_code import kept_machine_code, machine_code, sources
+from fes_mj.common.machine_code import inlined_machine_code, kept_machine_code, machine_code, sources
 from fes_mj.linkage.joints import JOINTS
 from fes_mj.linkage.legs import Leg
 from fes_mj.linkage.torque_source import TorqueSource
@@ -29,10 +29,12 @@ _numba: Any = require_extra("optimize", "numba", "llvmlite")
 _names = ("libmujoco*.so*", "libmujoco*.dylib", "mujoco.dll")  # of MuJoCo's library, beside its Python bindings
 _library = next(path for name in _names for path in Path(mujoco.__file__).parent.glob(name))
 require_extra("optimize", "llvmlite.binding").load_library_permanently(str(_library))
-_address, _flag = _numba.types.intp, _numba.types.int32
-_two = _numba.types.void(_address, _address)
-_step1, _step2, _com_vel = (_numba.types.ExternalFunction(name, _two) for name in ("mj_step1", "mj_step2", "mj_comVel"))
-_rne = _numba.types.ExternalFunction("mj_rne", _numba.types.void(_address, _address, _flag, _address))
+_address = _numba.types.intp
+_of_model_and_data = _numba.types.void(_address, _address)
+_position, _position_sensors, _velocity, _velocity_sensors, _step2 = (
+    _numba.types.ExternalFunction(name, _of_model_and_data)
+    for name in ("mj_fwdPosition", "mj_sensorPos", "mj_fwdVelocity", "mj_sensorVel", "mj_step2")
+)
 
 
 class Fields(NamedTuple):
@@ -41,7 +43,6 @@ class Fields(NamedTuple):
     qpos: FloatArray
     qvel: FloatArray
     qacc: FloatArray
-    qfrc_bias: FloatArray
     ctrl: FloatArray
     sensordata: FloatArray
     efc_force: FloatArray
@@ -54,28 +55,29 @@ class Fields(NamedTuple):
 Advance: TypeAlias = Callable[[float, tuple[int, int], Any, Fields, FloatArray, FloatArray], None]
 
 
-@machine_code
+@inlined_machine_code
 def lead(half: float, fields: Fields) -> None:
     """Find the speeds at the positions' own time, as in stepping.controlled_loop."""
     for i in range(len(fields.lead)):
         fields.lead[i] = fields.qvel[i] + half * fields.qacc[i]
 
 
-@machine_code
+@inlined_machine_code
 def step(pointers: tuple[int, int], fields: Fields) -> None:
-    """Step the model, with centrifugal forces of the speeds that `lead` found."""
+    """Step the model with the forces of the speeds that `lead` found, as in stepping.controlled_loop."""
     model, data = pointers
-    _step1(model, data)
+    _position(model, data)
+    _position_sensors(model, data)
     for i in range(len(fields.held)):
         fields.held[i], fields.qvel[i] = fields.qvel[i], fields.lead[i]
-    _com_vel(model, data)
-    _rne(model, data, 0, fields.qfrc_bias.ctypes.data)
+    _velocity(model, data)
     for i in range(len(fields.held)):
         fields.qvel[i] = fields.held[i]
+    _velocity_sensors(model, data)
     _step2(model, data)
 
 
-@machine_code
+@inlined_machine_code
 def record(row: int, fields: Fields, sensor_rows: FloatArray, force_rows: FloatArray) -> None:
     """Keep the sensors, and of every so many steps the constraint forces."""
     for i in range(sensor_rows.shape[1]):
@@ -120,7 +122,7 @@ def compiled_controlled_loop(
         sensor_rows = np.empty((count + 1, model.nsensordata))
         force_rows = np.empty((-(-count // FORCE_EVERY) if forces else 0, len(force)))
         lead, held = np.empty((2, model.nv))
-        fields = Fields(data.qpos, data.qvel, data.qacc, data.qfrc_bias, data.ctrl, data.sensordata, force, lead, held)
+        fields = Fields(data.qpos, data.qvel, data.qacc, data.ctrl, data.sensordata, force, lead, held)
         pointers = (model._address, data._address)
         advance(model.opt.timestep / 2, pointers, arguments(model), fields, sensor_rows, force_rows)
         if forces and data.efc_force.ctypes.data != force.ctypes.data:
@@ -134,13 +136,13 @@ def compiled_controlled_loop(
 def _map_advance() -> Advance:
     """Steps under the moments of the torque map."""
 
-    @machine_code
+    @inlined_machine_code
     def acos(value: float) -> float:
         return math.acos(min(1.0, max(-1.0, value)))
 
-    knee_map, hip_map = (scalar_map(joint, acos, machine_code) for joint in JOINTS)
+    knee_map, hip_map = (scalar_map(joint, acos, inlined_machine_code) for joint in JOINTS)
 
-    @machine_code
+    @inlined_machine_code
     def control(arguments: Any, qpos: Any, speeds: Any, ctrl: Any) -> None:
         addresses, kinds, knee, hip = arguments
         for drive in range(len(kinds)):

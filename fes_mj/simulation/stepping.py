@@ -93,23 +93,25 @@ def controlled_loop(control: Control, record: tuple[str, ...] = (), every: int =
         # plain floats through memory views and rows as bytes cost half of numpy scalars and row assignment
         qvel, acceleration, lead, held = data.qvel, data.qacc, np.empty(model.nv), np.empty(model.nv)
         act = control(model, data, memoryview(lead.data))
-        first, second, read, half = mujoco.mj_step1, mujoco.mj_step2, data.sensordata.tobytes, model.opt.timestep / 2
-        velocities, bias_force, bias = mujoco.mj_comVel, mujoco.mj_rne, data.qfrc_bias
+        position, position_sensors, velocity = mujoco.mj_fwdPosition, mujoco.mj_sensorPos, mujoco.mj_fwdVelocity
+        velocity_sensors, second = mujoco.mj_sensorVel, mujoco.mj_step2
+        read, half = data.sensordata.tobytes, model.opt.timestep / 2
         width, place = data.sensordata.nbytes, 0
         sensors = bytearray((count + 1) * width)
         fields: dict[str, list[bytes]] = {name: [] for name in record}
         for number in range(count):
             # MuJoCo's speeds lag its positions by half a step: with those at the positions' own time, moments and
-            # centrifugal forces are of second order
+            # centrifugal forces are of second order. A step without mj_step1's look for bad states: mj_step2 has one.
             np.multiply(acceleration, half, out=lead)
             np.add(lead, qvel, out=lead)
             act()
-            first(model, data)
+            position(model, data)
+            position_sensors(model, data)
             held[:] = qvel
             qvel[:] = lead
-            velocities(model, data)
-            bias_force(model, data, 0, bias)
+            velocity(model, data)
             qvel[:] = held
+            velocity_sensors(model, data)
             second(model, data)
             sensors[place : place + width] = read()
             place += width
