@@ -188,15 +188,15 @@ def simulated() -> dict[str, np.ndarray]:
         mujoco.mj_getState(model, data, state, full)
         given[:] = data.ctrl
     workspace = [mujoco.MjData(models[0]) for _ in range(THREADS)]
+    own_data = [mujoco.MjData(model) for model in models]  # made beforehand, as the rollout's workspace is
 
-    def fed_back(model: mujoco.MjModel) -> None:
-        data = mujoco.MjData(model)
+    def fed_back(model: mujoco.MjModel, data: mujoco.MjData) -> None:
         mujoco.mj_resetDataKeyframe(model, data, 0)
         loop(model, data, steps)
 
-    def threads(function: Any, items: Any) -> None:
+    def threads(function: Any, *items: Any) -> None:
         with ThreadPoolExecutor(THREADS) as pool:
-            list(pool.map(function, items))
+            list(pool.map(function, *items))
 
     return rates(
         {
@@ -205,12 +205,12 @@ def simulated() -> dict[str, np.ndarray]:
                 TURNS,
                 lambda: [simulate(design, MOMENTS, options=MACHINE_CODE) for design in new_riders()],
             ),
-            "stepping of the batch path, one thread": (TURNS, lambda: list(map(fed_back, models))),
+            "stepping of the batch path, one thread": (TURNS, lambda: list(map(fed_back, models, own_data))),
             "bare rollout, one thread": (
                 TURNS,
                 lambda: rollout.rollout(models, workspace[:1], states, control, nstep=steps),
             ),
-            f"stepping of the batch path, {THREADS} threads": (TURNS, lambda: threads(fed_back, models)),
+            f"stepping of the batch path, {THREADS} threads": (TURNS, lambda: threads(fed_back, models, own_data)),
             f"bare rollout, {THREADS} threads": (
                 TURNS,
                 lambda: rollout.rollout(models, workspace, states, control, nstep=steps),

@@ -121,7 +121,9 @@ def build_mjcf(
     steps = loose_steps(design, cadence, legs, physics.gravity) if loose else steps_per_turn(design, cadence, timestep)
     integrator = "rk4" if not held else "euler" if options.compatible else "discrete"
     set_options(spec, 2 * math.pi / cadence / steps, physics.gravity, integrator)
-    _set_defaults(spec, physics.loop_solref or LOOP_SOLREF)
+    shared = _set_defaults(spec, physics.loop_solref or LOOP_SOLREF)
+    if options.drawn:
+        appearance.define_parts(spec, shared)
     # one fixed root: some readers drop all bodies but the first
     root = spec.worldbody.add_body(name="tricycle", childclass="tricycle")
     scale = physics.mass_scale
@@ -175,7 +177,7 @@ def set_options(spec: Spec, timestep: float, gravity: float, integrator: str = "
     option.disableflags = int(mujoco.mjtDisableBit.mjDSBL_CONTACT | mujoco.mjtDisableBit.mjDSBL_ISLAND)
 
 
-def _set_defaults(spec: Spec, loop_solref: tuple[float, float]) -> None:
+def _set_defaults(spec: Spec, loop_solref: tuple[float, float]) -> Spec:
     """The default class `tricycle`: what all joints, loops, sites and geoms of the model share."""
     shared = spec.add_default("tricycle", spec.default)
     shared.joint.axis = AXIS
@@ -184,7 +186,7 @@ def _set_defaults(spec: Spec, loop_solref: tuple[float, float]) -> None:
     shared.site.quat = SITE_TURN
     # geoms are pictures: no mass, no contact
     shared.geom.density, shared.geom.contype, shared.geom.conaffinity, shared.geom.group = 0, 0, 0, 2
-    appearance.define_parts(spec, shared)
+    return shared
 
 
 def position(point: complex, lateral: float = 0.0) -> tuple[float, float, float]:

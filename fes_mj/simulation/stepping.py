@@ -143,7 +143,7 @@ def run_loop(model: mujoco.MjModel, loop: Loop, steps: int, pre_roll: int = PRE_
         before, _ = loop(model, data, pre_roll)
         start = energy(model, data, model.opt.timestep / 2)
         sensors, fields = loop(model, data, steps)
-        if any(warning.number for warning in data.warning):
+        if data.warning.number.any():
             raise UnstableError(
                 f"{model.names[: model.names.index(0)].decode()}: the simulation became unstable "
                 f"with a time step of {1e3 * model.opt.timestep:.3g} ms; a shorter one may do"

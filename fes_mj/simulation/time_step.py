@@ -44,28 +44,31 @@ def local_errors(design: Design, cadence: float, step: float, angles: FloatArray
     The scheme puts every link where its loops close up to the gap g = step^2/2 * (difference of sum arm * turning^2
     along the two chains), takes speeds and accelerations as differences of such poses and balances the forces there.
     """
-    now, before, earlier, after = (_pose(design, angles + shift * step, step) for shift in (0, -1, -2, 1))
-    motion, power = now.motion, 0.0
+    poses = _pose(design, angles + step * np.arange(-2, 2)[:, None], step)  # two before, one before, now, one after
+    motion, power = kinematics.solve(design, angles), 0.0
+    links, rates = ({link: values[_NOW] for link, values in part.items()} for part in (poses.links, poses.rates))
+    # angles by which links turn between neighbours
+    turned = {link: np.angle(tips[1:] * np.conj(tips[:-1])) for link, tips in poses.links.items()}
     for body, inertia in inertias(design).items():
-        first = {link: _turned(before, now, link) / step for link in _CHAINS[body]}
-        second = {link: _turned(now, after, link) / step**2 - first[link] / step for link in _CHAINS[body]}
+        first = {link: turned[link][1] / step for link in _CHAINS[body]}
+        second = {link: turned[link][2] / step**2 - first[link] / step for link in _CHAINS[body]}
         # speeds lag positions by half a step, which the loop makes good by extrapolation
-        speed = {link: 1.5 * first[link] - 0.5 * _turned(earlier, before, link) / step for link in _CHAINS[body]}
-        arms = _arms(body, now.links, inertia.centre / design.link_lengths[body])
+        speed = {link: 1.5 * first[link] - 0.5 * turned[link][0] / step for link in _CHAINS[body]}
+        arms = _arms(body, links, inertia.centre / design.link_lengths[body])
         acceleration = cadence**2 * sum(arm * (1j * second[link] - speed[link] ** 2) for link, arm in arms)
-        velocity = sum(1j * arm * now.rates[link] for link, arm in arms)
+        velocity = sum(1j * arm * rates[link] for link, arm in arms)
         centre = motion.body_point(body, inertia.centre)
         force = np.conj(acceleration + 1j * GRAVITY) * velocity
         exact = np.conj(cadence**2 * centre.second + 1j * GRAVITY) * centre.first
-        couple = cadence**2 * (
-            second[body] * now.rates[body] - motion.rotation[body].second * motion.rotation[body].first
-        )
+        couple = cadence**2 * (second[body] * rates[body] - motion.rotation[body].second * motion.rotation[body].first)
         power = power - cadence * (inertia.mass * (force - exact).real + inertia.moment * couple)
-    return np.asarray(power), now.gap
+    return np.asarray(power), poses.gap[_NOW]
+
+
+_NOW = 2  # of the poses of local_errors
 
 
 class _Pose(NamedTuple):
-    motion: kinematics.Motion  # exact
     links: Mapping[str, ComplexArray]  # origin to tip, with the gaps, m
     rates: Mapping[str, FloatArray]  # rate of each link per crank angle, with the gaps
     gap: FloatArray  # m
@@ -84,11 +87,6 @@ _CHAINS = {
 def _arms(body: str, links: Mapping[str, ComplexArray], offset: complex) -> list[tuple[str, ComplexArray]]:
     """The chain's arms from the frame to the point at `offset` of a body, in units of its link."""
     return [(link, links[link] * (offset if link == body else 1.0)) for link in _CHAINS[body]]
-
-
-def _turned(start: _Pose, end: _Pose, link: str) -> FloatArray:
-    """Angle by which a link turns between two poses, rad."""
-    return np.asarray(np.angle(end.links[link] * np.conj(start.links[link])))
 
 
 def _pose(design: Design, crank_angle: FloatArray, step: float) -> _Pose:
@@ -124,7 +122,7 @@ def _pose(design: Design, crank_angle: FloatArray, step: float) -> _Pose:
         carrier = linkage.architecture.pedal_body
         base = linkage.crank_centre if carrier == "crank" else linkage.ground
         close(("thigh", "shank"), carrier, linkage.pedal_offset, 0j, base)
-    return _Pose(motion, links, rates, np.max(gaps, axis=0))
+    return _Pose(links, rates, np.max(gaps, axis=0))
 
 
 # A predicted error may take up this share of its limit. The other half is for the joint moments, which the prediction
