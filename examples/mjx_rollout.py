@@ -33,7 +33,7 @@ def roll_out(design: str = "r2", copies: int = COPIES, duration: float = DURATIO
     model = spec.compile()
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, 0)
-    moment, behind = drive(chosen, moments).moment, POINTS // 2
+    moment, behind = drive(chosen, moments), POINTS // 2
     table = np.array([np.roll(moment[joint], behind if leg == "left" else 0) for leg, joint in JOINTS])
     assert [model.actuator(i).name for i in range(model.nu)] == [f"{leg}_{joint}" for leg, joint in JOINTS]
     crank = int(model.joint("crank").qposadr[0])

@@ -5,8 +5,6 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import cast
 
-import numpy as np
-
 from fes_mj.common.arrays import ComplexArray, FloatArray
 from fes_mj.linkage import kinematics
 from fes_mj.linkage.design import Design
@@ -117,7 +115,7 @@ class Pipeline(Setup):
         Raises AssemblyError if the linkage does not close.
         """
         driven_speed(self.design, self.drive, self.cadence, self.legs)
-        motion = self.motion(np.linspace(0, 2 * np.pi, points or turn_points(self.design), endpoint=False))
+        motion = self.motion(kinematics.uniform_turn(points or turn_points(self.design)))
         joint_moment, torque = self.joint_moment(motion, leg), self.torque.of(leg)
         crank_moment, reactions = self.equilibrium(motion, joint_moment)
         turn = (motion, self.cadence, joint_moment, crank_moment, reactions)

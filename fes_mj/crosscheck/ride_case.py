@@ -102,23 +102,20 @@ class RideCase(Brief):
 
     # What is concluded.
 
-    def check(self, name: str, value: float) -> Check:
-        """A measured value of this ride beside its limit."""
-        return check(name, value, self.ride.name)
-
     @cached_property
     def checks(self) -> tuple[Check, ...]:
         """The comparison."""
         run, mine, other = self.simulation, self.simulation.trace, self.reference
         turns_apart = 0.0 if mine.rides and other.rides else abs(mine.turns - other.turns)  # where they stop
-        return (
-            self.check("ride_verdict", turns_apart if mine.rides == other.rides else math.inf),
-            self.check("ride_speed", speed_difference(mine, other)),
-            self.check("ride_settled", relative(mine.mean_speed, other.mean_speed)),
-            self.check("ride_power", self._power_difference()),
-            self.check("ride_energy", abs(run.lost) / work_scale(mine)),
-            self.check("loop_gap", run.loop_gap_max),
-        )
+        values = {
+            "ride_verdict": turns_apart if mine.rides == other.rides else math.inf,
+            "ride_speed": speed_difference(mine, other),
+            "ride_settled": relative(mine.mean_speed, other.mean_speed),
+            "ride_power": self._power_difference(),
+            "ride_energy": abs(run.lost) / work_scale(mine),
+            "loop_gap": run.loop_gap_max,
+        }
+        return tuple(check(name, value, self.ride.name) for name, value in values.items())
 
     def _power_difference(self) -> float:
         """Mean power of MuJoCo's muscles less what the reference's road takes and its motion gains, per the largest."""

@@ -27,7 +27,7 @@ from fes_mj.statics.turn import QuasiStatic, quasi_static, turn_points
 
 POINTS = 360  # crank angles of a turn, from 0, at which curves are sent
 DIGITS = 3  # after the point, of curves in W and deg
-_ANGLES = np.linspace(0, 2 * np.pi, POINTS, endpoint=False)
+_ANGLES = kinematics.uniform_turn(POINTS)
 
 
 def turn(design: Design, moments: Mapping[str, JointMoments], legs: int = 1) -> dict[str, Any]:
@@ -41,7 +41,7 @@ def turn(design: Design, moments: Mapping[str, JointMoments], legs: int = 1) -> 
         solved = {name: quasi_static(design, own, points=POINTS) for name, own in moments.items()}
     except InputError as error:
         return answer | {"why": failing["text"] if failing else str(error), "broken": broken(design, None)}
-    motion = kinematics.solve(design, np.linspace(0, 2 * np.pi, turn_points(design), endpoint=False))
+    motion = kinematics.solve(design, kinematics.uniform_turn(turn_points(design)))
     fine = {name: _fine(static, motion) for name, static in solved.items()}
     first, coarse = (next(iter(turns.values())) for turns in (fine, solved))
     return answer | {

@@ -6,7 +6,7 @@ import numpy as np
 
 from fes_mj.common.arrays import ComplexArray, FloatArray
 from fes_mj.linkage.design import Design
-from fes_mj.linkage.kinematics import FULL_TURN, Motion, Points, joint_angles, positions, solve
+from fes_mj.linkage.kinematics import FULL_TURN, Motion, Points, joint_angles, positions, solve, uniform_turn
 
 # Links of each dyad -> the points they span, and the joint between them.
 DYADS = {
@@ -18,7 +18,7 @@ DYADS = {
 LEAST_CLEARANCE = 1e-4
 # Angles between which the extremes of the leg's span are sought. A rocker LEAST_CLEARANCE from its dead centre passes
 # it within 2 deg, in which the pedal moves by a few millimetres: less than NEAR, within which extremes are exact.
-SCAN = np.linspace(0.0, 2 * np.pi, 120, endpoint=False)
+SCAN = uniform_turn(120)
 NEAR = 0.01  # m
 _ITERATIONS = 20  # halving the steps of SCAN, where Newton does not help, leaves 5e-8 rad
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from fes_mj.common.errors import require_extra
 from fes_mj.linkage.design import BODIES, Design
-from fes_mj.linkage.kinematics import FULL_TURN, Motion, solve
+from fes_mj.linkage.kinematics import FULL_TURN, Motion, solve, uniform_turn
 from fes_mj.linkage.plates import Plate
 from fes_mj.linkage.shapes import bars
 
@@ -54,7 +54,7 @@ _Core: TypeAlias = tuple[complex, ...]
 
 @lru_cache(maxsize=8)
 def _motion(design: Design, points: int) -> Motion:
-    return solve(design, np.linspace(0, 2 * np.pi, points, endpoint=False))
+    return solve(design, uniform_turn(points))
 
 
 @lru_cache(maxsize=1000)

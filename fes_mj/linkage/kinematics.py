@@ -17,7 +17,13 @@ from fes_mj.linkage.joints import PerJoint
 
 Points: TypeAlias = dict[str, ComplexArray]  # point name -> positions over crank angle, m
 
-FULL_TURN = np.linspace(0.0, 2 * np.pi, 720, endpoint=False)
+
+def uniform_turn(points: int) -> FloatArray:
+    """So many crank angles over a turn, from 0, rad, shape (points,)."""
+    return np.linspace(0.0, 2 * np.pi, points, endpoint=False)
+
+
+FULL_TURN = uniform_turn(720)
 
 
 class Jet(NamedTuple):

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from fes_mj.common.arrays import BoolArray, FloatArray
-from fes_mj.linkage.kinematics import solve
+from fes_mj.linkage.kinematics import solve, uniform_turn
 from fes_mj.linkage.variables import component, replaced
 from fes_mj.moments.fourier import fit
 from fes_mj.moments.reference_tricycle import ReferenceTricycle
@@ -88,7 +88,7 @@ def few_factor(count: int) -> float:
 
 def weights_on(measured_on: ReferenceTricycle) -> FloatArray:
     """Of the mean power in the tricycle of the measurement, per coefficient of the moments, W/(N m), shape (98,)."""
-    motion = solve(measured_on.design, np.linspace(0, 2 * np.pi, _POINTS, endpoint=False))
+    motion = solve(measured_on.design, uniform_turn(_POINTS))
     return power_weights(motion, measured_on.cadence, measured_on)
 
 

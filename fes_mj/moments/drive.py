@@ -4,44 +4,35 @@ The torque map takes the direction of a joint from the sign of its speed; here i
 the crank is doing.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from fes_mj.common.arrays import BoolArray, FloatArray
-from fes_mj.linkage import kinematics
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.joints import JOINTS, PerJoint
+from fes_mj.linkage.kinematics import Motion, solve, uniform_turn
 from fes_mj.moments.joint_moments import JointMoments
+from fes_mj.moments.reference_tricycle import ReferenceTricycle
 from fes_mj.moments.torque_map import TABLE_SIZE, torque_map
 
 POINTS = TABLE_SIZE  # crank angles of a table over a turn
 
 
-@dataclass(frozen=True, eq=False)
-class Drive:
-    """One turn of one leg over uniform crank angles, shape (points,).
-
-    moment: N m, of each joint. breaks: whether a joint turns round, or leaves the range of the moments, between a crank
-    angle and the next.
-    """
-
-    moment: PerJoint[FloatArray]
-    breaks: BoolArray
-    motion: kinematics.Motion
+def drive(design: Design, moments: JointMoments, points: int = POINTS) -> PerJoint[FloatArray]:
+    """Moments of one leg of a design over so many uniform crank angles of a turn, N m, shape (points,)."""
+    return driven(solve(design, uniform_turn(points)), moments)
 
 
-def drive(design: Design, moments: JointMoments, points: int = POINTS) -> Drive:
-    """Moments for a design. points: crank angles of the turn."""
-    return driven(kinematics.solve(design, np.linspace(0, 2 * np.pi, points, endpoint=False)), moments)
-
-
-def driven(motion: kinematics.Motion, moments: JointMoments) -> Drive:
-    """The same along a motion over uniform crank angles."""
+def driven(motion: Motion, moments: JointMoments) -> PerJoint[FloatArray]:
+    """The same along a motion over crank angles."""
     torque = torque_map(moments)
+    return torque.along(motion, torque.reference.cadence)
+
+
+def breaks(motion: Motion, reference: ReferenceTricycle) -> BoolArray:
+    """Whether a joint turns round, or leaves the range of the moments, between a crank angle and the next.
+
+    motion: over uniform crank angles of a turn. reference: the tricycle of the measurement.
+    """
     angle, rate = motion.joint_angle, motion.joint_rate
-    sides = [rate[joint] >= 0 for joint in JOINTS] + [
-        torque.reference.excess(joint, angle[joint]) == 0 for joint in JOINTS
-    ]
-    breaks = np.logical_or.reduce([side != np.roll(side, -1) for side in sides])
-    return Drive(torque.along(motion, torque.reference.cadence), breaks, motion)
+    sides = [side for joint in JOINTS for side in (rate[joint] >= 0, reference.excess(joint, angle[joint]) == 0)]
+    return np.asarray(np.logical_or.reduce([side != np.roll(side, -1) for side in sides]))

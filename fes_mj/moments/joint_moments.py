@@ -10,6 +10,7 @@ from fes_mj.common.arrays import FloatArray
 from fes_mj.common.brief import Brief
 from fes_mj.common.errors import InputError
 from fes_mj.linkage.joints import PerJoint
+from fes_mj.linkage.kinematics import uniform_turn
 from fes_mj.moments.fourier import fit, fourier
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE, ReferenceTricycle
 
@@ -105,6 +106,6 @@ class JointMoments(Brief):
     @cached_property
     def power_mean(self) -> PerJoint[float]:
         """Mean power of each joint in the tricycle of the measurement, at its cadence, W."""
-        angle = np.linspace(0, 2 * np.pi, MEASURED_POINTS, endpoint=False)
+        angle = uniform_turn(MEASURED_POINTS)
         moment, rate = self.at(angle), self.measured_on.joint_rates(angle)
         return PerJoint.of(lambda joint: float(np.mean(moment[joint] * rate[joint])) * self.measured_on.cadence)

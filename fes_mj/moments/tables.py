@@ -141,10 +141,8 @@ def load_table(path: Path, what: str, wanted: Collection[str] = ()) -> Table:
 def _text(path: Path, what: str) -> str:
     """The text of a file: UTF-8, UTF-16 as spreadsheets write it, otherwise Western European."""
     data, suffix = read_bytes(path, what), path.suffix.lower()
-    if suffix in _WAYS:
-        _refuse_kind(path, suffix)
     wide = data.startswith((b"\xff\xfe", b"\xfe\xff"))
-    if b"\0" in data and not wide:
+    if suffix in _WAYS or (b"\0" in data and not wide):
         _refuse_kind(path, suffix)
     try:
         return data.decode("utf-16" if wide else "utf-8-sig")

@@ -209,10 +209,8 @@ def run_searches(
     """
     seeds = SeedSequence(seed).spawn(searches)
     outcomes: dict[int, Result | InputError] = {**findings.finished()} if findings else {}
-    budget, here = (
-        budget or usual_budget(method, not problem.drive.proportional),
-        workers.jobs == 1 and not workers.cluster,
-    )
+    budget = budget or usual_budget(method, not problem.drive.proportional)
+    here = workers.jobs == 1 and not workers.cluster
     progress(budget * len(outcomes))
     missing = [number for number in range(searches) if number not in outcomes]
     kept_at_once = None if workers.cluster else findings

@@ -22,7 +22,7 @@ DIRECTIONS = {"extension": 1.0, "flexion": -1.0}
 LARGEST_NUMBER = 1e6  # in any unit here; beyond it something else was meant
 SMALLEST_ERROR = 1e-9
 SHORTEST_LEG, LONGEST_LEG = 0.475, 1.0  # m, thigh and shank alike; the TRT closes with these
-_ANGLES = np.linspace(0, 2 * np.pi, 1440, endpoint=False)
+_ANGLES = kinematics.uniform_turn(1440)
 
 
 @dataclass(frozen=True)

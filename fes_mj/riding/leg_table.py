@@ -17,7 +17,7 @@ from fes_mj.linkage.design import Design
 from fes_mj.linkage.inertia import CrankInertia, crank_inertia
 from fes_mj.linkage.joints import JOINTS, PerJoint
 from fes_mj.linkage.legs import TWO_LEGS, Leg, all_legs, delayed
-from fes_mj.moments.drive import POINTS, driven
+from fes_mj.moments.drive import POINTS, breaks, driven
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.riding.muscle_table import NO_MUSCLES, MuscleTable, at_rest, muscle_table
 from fes_mj.riding.stimulated import StimulatedRider, felt_over
@@ -104,18 +104,18 @@ class _Legs(NamedTuple):
 
 
 def _legs(design: Design, drive: JointMoments | StimulatedRider, cells: int) -> _Legs:
-    motion = kinematics.solve(design, np.linspace(0, 2 * np.pi, cells, endpoint=False))
+    motion = kinematics.solve(design, kinematics.uniform_turn(cells))
     masses = CrankInertia(*map(all_legs, crank_inertia(motion)))
     rate = _by_driven(dict.fromkeys(TWO_LEGS, motion.joint_rate))
     if isinstance(drive, JointMoments):
-        drives = {leg: driven(motion, drive.of_leg(leg.prefix)) for leg in TWO_LEGS}
-        moment, muscles = _by_driven({leg: own.moment for leg, own in drives.items()}), NO_MUSCLES
+        own = {leg: drive.of_leg(leg.prefix) for leg in TWO_LEGS}
+        moment, muscles = _by_driven({leg: driven(motion, moments) for leg, moments in own.items()}), NO_MUSCLES
         push = (rate * moment).sum(axis=0)
         pulls = push[None]
-        breaks = np.logical_or.reduce([delayed(own.breaks, leg.lag) for leg, own in drives.items()])
+        broken = np.logical_or(*(delayed(breaks(motion, own[leg].measured_on), leg.lag) for leg in TWO_LEGS))
     else:
-        moment, muscles, breaks = np.zeros((0, cells)), muscle_table(drive.riders, motion), np.zeros(cells, bool)
-        angle = np.linspace(0, 2 * np.pi, REST_POINTS, endpoint=False)
+        moment, muscles, broken = np.zeros((0, cells)), muscle_table(drive.riders, motion), np.zeros(cells, bool)
+        angle = kinematics.uniform_turn(REST_POINTS)
         active = [
             np.interp(motion.crank_angle, angle, group, period=2 * np.pi)
             for group in felt_over(drive.stimulator, angle, 0.0)
@@ -124,7 +124,7 @@ def _legs(design: Design, drive: JointMoments | StimulatedRider, cells: int) -> 
         pulls = all_legs(muscles.drive[:-1].T)
     work = 2 * np.pi * max(float(np.abs(pulls).mean(axis=1).max()), LEAST_PUSH)
     inertia, recoil = masses.inertia_rate / masses.inertia.max(), masses.recoil_rate / np.abs(masses.recoil).max()
-    return _Legs(masses, rate, moment, muscles, push, breaks, np.vstack([pulls / work, inertia, recoil]))
+    return _Legs(masses, rate, moment, muscles, push, broken, np.vstack([pulls / work, inertia, recoil]))
 
 
 def _by_driven(of_legs: dict[Leg, PerJoint[FloatArray]]) -> FloatArray:

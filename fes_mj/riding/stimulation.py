@@ -98,7 +98,7 @@ def stimulation(design: Design) -> list[Window]:
     ('quadriceps', 'right', [315, 444])
     """
     turning(design)
-    angle = np.linspace(0, 2 * np.pi, POINTS, endpoint=False)
+    angle = kinematics.uniform_turn(POINTS)
     rate = kinematics.solve(design, angle).joint_rate
     windows = []
     for name, muscle in MUSCLES.items():

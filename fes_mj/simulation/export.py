@@ -85,7 +85,7 @@ def sidecar_text(design: Design, drive: Drive, cadence: float | None = None, leg
     cadence = crank_speed(design, cadence)
     torque = torque_source(drive, design, cadence)
     native = native_muscles(design, drive, cadence) if isinstance(drive, Muscles) else None
-    angle = np.linspace(0, 2 * np.pi, SIDECAR_ROWS, endpoint=False)
+    angle = kinematics.uniform_turn(SIDECAR_ROWS)
     columns = {"crank_angle_deg": np.degrees(angle), FROM_TOP: turning(design).degrees_from_top(angle)}
     massive, massless = np.zeros((2, SIDECAR_ROWS))
     for leg in LEGS[legs]:

@@ -144,10 +144,10 @@ def _start_half_a_step_early(model: mujoco.MjModel, ride: Ride) -> None:
 
     What changes in that time is as the reduced equation has it: that the ride begins at its launch speed is no result.
     """
-    gain = {ROAD: 0.0, "crank": 0.0}
+    rates = None
     if ride.launch:
         begun = ride_by_equation(replace(ride, duration=INSTANT))
-        gain = {ROAD: begun.speed[-1] - begun.speed[0], "crank": begun.crank_speed[-1] - begun.crank_speed[0]}
-    rates = {name: float(change) / INSTANT for name, change in gain.items()}
+        speeds = {ROAD: begun.speed, "crank": begun.crank_speed}
+        rates = {name: float(speed[-1] - speed[0]) / INSTANT for name, speed in speeds.items()}
     for joint, (_, speed) in start_state(ride, model.opt.timestep, rates).items():
         model.key_qvel[0, model.joint(joint).dofadr[0]] = speed

@@ -76,9 +76,7 @@ def road_control(ride: Ride, model: mujoco.MjModel) -> RoadControl:
     muscles, stimulator, moments = _NO_MUSCLES, NO_STIMULATOR, np.zeros((0, cells + 1))
     if isinstance(drive, JointMoments):
         drives = {leg: driven_by_moments(ride.design, drive.of_leg(leg.prefix), cells) for leg in TWO_LEGS}
-        moments = np.array(
-            [np.append(curve, curve[0]) for curve in (drives[leg].moment[joint] for leg, joint in DRIVEN)]
-        )
+        moments = np.array([np.append(curve, curve[0]) for curve in (drives[leg][joint] for leg, joint in DRIVEN)])
     else:
         muscles, stimulator = LegMuscles.of(drive.riders, ride.design.rider), drive.stimulator
     addresses = np.array([drive_addresses(model, leg.prefix + joint) for leg, joint in DRIVEN])

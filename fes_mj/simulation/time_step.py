@@ -18,7 +18,7 @@ from fes_mj.linkage.legs import LEGS
 from fes_mj.linkage.turning import turning
 
 # Crank angles at which the error is evaluated: a dyad 0.1 mm from its dead centre passes it within 2 deg.
-FINE_TURN = np.linspace(0.0, 2 * np.pi, 7200, endpoint=False)
+FINE_TURN = kinematics.uniform_turn(7200)
 
 
 class Errors(NamedTuple):

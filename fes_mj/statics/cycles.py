@@ -16,7 +16,7 @@ from fes_mj.common.units import turns_per_second
 from fes_mj.linkage.assembly import SCAN
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.joints import PerJoint
-from fes_mj.linkage.kinematics import joint_angles, positions
+from fes_mj.linkage.kinematics import joint_angles, positions, uniform_turn
 from fes_mj.linkage.turning import BatchTurning, batch_turning, leg_reach
 from fes_mj.moments.reference_tricycle import ReferenceTricycle
 from fes_mj.statics.extrapolation import beyond, drift_area, never_inside, outside_share
@@ -94,7 +94,7 @@ def cycles(design: Design, table: WorkTable, points: int = CYCLE_POINTS) -> Cycl
 
     points: crank angles, uniform; the extremes between them are found by a parabola.
     """
-    crank_angle = np.linspace(0, 2 * np.pi, points, endpoint=False)
+    crank_angle = uniform_turn(points)
     size = max(1, BLOCK_POSITIONS // points)
     blocks = (_block(design.taken(slice(start, start + size)), crank_angle) for start in range(0, design.size, size))
     reach, angles, turned = zip(*blocks, strict=True)

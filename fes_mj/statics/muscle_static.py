@@ -72,15 +72,10 @@ class MuscleStatic(DrivenTurn):
         return self.power_mean / other.power_mean, float((self.powers / other.powers).std())
 
     @property
-    def most_probable(self) -> int:
-        """Number of the rider with the largest density."""
-        return self.stimulated.most_probable
-
-    @property
     def windows_deg(self) -> dict[str, list[float] | None] | None:
         """[on, off] by group of the most probable rider's stimulation, deg of crank; None where there is none."""
         windows = self.stimulated.windows
-        return windows.by_group(self.most_probable) if windows else None
+        return windows.by_group(self.stimulated.most_probable) if windows else None
 
     @property
     def notes(self) -> list[str]:
@@ -98,7 +93,7 @@ class MuscleStatic(DrivenTurn):
             "timing": self.rule,
             "legs": self.legs,
             "power_sd_W": self.power_sd,
-            "power_mode_W": float(self.powers[self.most_probable]),
+            "power_mode_W": float(self.powers[self.stimulated.most_probable]),
             "muscle_power_W": None if turn is None else float(turn.power_mean[whose].mean()),
             "power_two_legs_min_W": float(both.min()),
             "negative_share": float(np.mean(both < 0)),

@@ -176,14 +176,10 @@ class QuasiStatic(DrivenTurn):
 @lru_cache(maxsize=256)
 def turn_points(design: Design) -> int:
     """Crank angles over which a turn is solved: TURN_POINTS, and more where a joint turns round more sharply."""
-    motion = kinematics.solve(design, _uniform(TURN_POINTS))
+    motion = kinematics.solve(design, kinematics.uniform_turn(TURN_POINTS))
     sharpest = max(float(np.abs(rotation.second).max()) for rotation in motion.joint_rotation)
     needed = TURN_POINTS * math.sqrt(max(1.0, sharpest / BLUNT))
     return CURVE_POINTS * math.ceil(needed / CURVE_POINTS)
-
-
-def _uniform(points: int) -> FloatArray:
-    return np.linspace(0, 2 * np.pi, points, endpoint=False)
 
 
 def quasi_static(
@@ -199,7 +195,7 @@ def quasi_static(
     <QuasiStatic d1 p1p2: 31.14 W at 96.4 rpm>
     """
     speed = valid_speed(design, moments, cadence)
-    motion = kinematics.solve(design, _uniform(points or turn_points(design)))
+    motion = kinematics.solve(design, kinematics.uniform_turn(points or turn_points(design)))
     torque = torque_map(moments)
     joint_moment = torque.along(motion, speed)
     return QuasiStatic(motion, speed, joint_moment, *equilibrium(motion, joint_moment), torque)

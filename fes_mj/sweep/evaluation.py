@@ -10,7 +10,7 @@ from fes_mj.common.errors import InputError, UnstableError
 from fes_mj.common.units import RPM, turns_per_second
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.joints import JOINTS
-from fes_mj.linkage.kinematics import solve
+from fes_mj.linkage.kinematics import solve, uniform_turn
 from fes_mj.linkage.legs import all_legs
 from fes_mj.linkage.torque_source import TorqueSource
 from fes_mj.linkage.variables import COMPONENTS, crank_speed, replaced
@@ -216,5 +216,5 @@ def _options(torque: TorqueSource) -> "BenchOptions":
 
 def _power(design: Design, torque: TorqueSource, cadence: float) -> float:
     """Quasi-static mean crank power of one leg, W; cadence: rad/s."""
-    motion = solve(design, np.linspace(0, 2 * np.pi, turn_points(design), endpoint=False))
+    motion = solve(design, uniform_turn(turn_points(design)))
     return float(np.mean(cadence * virtual_work(motion, torque.along(motion, cadence))))

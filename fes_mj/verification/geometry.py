@@ -16,20 +16,20 @@ from fes_mj.common.checks import Check
 from fes_mj.crosscheck.turn_case import Case
 from fes_mj.linkage.design import BODIES, BRANCHES
 from fes_mj.linkage.joints import JOINTS
-from fes_mj.linkage.kinematics import Motion, cross
+from fes_mj.linkage.kinematics import Motion, cross, uniform_turn
 from fes_mj.linkage.variables import SHORTEST
 from fes_mj.verification.case import VerificationCase
 
 # The catalogue is resolved to rounding by 512 points; linkages closer to a dead centre turn faster there.
 SAMPLES = 2048
-POSES = np.linspace(0, 2 * np.pi, 72, endpoint=False)
+POSES = uniform_turn(72)
 DEGREES = ("gamma", "seat_angle")  # keys of a design file that are angles
 WHEEL, SPEED = 0.66, 5.71 / 3.6  # m, m/s: of Eq. 16, not the reader's
 
 
 def geometry_checks(case: Case) -> Iterator[Check]:
     """Closure, branch and rates of one case."""
-    motion = case.steps.motion(np.linspace(0, 2 * np.pi, SAMPLES, endpoint=False))
+    motion = case.steps.motion(uniform_turn(SAMPLES))
     first, second = rate_errors(motion)
     yield case.check("loop_closure", closure_error(motion))
     yield case.check("assembly_mode", wrong_branch(motion))

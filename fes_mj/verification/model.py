@@ -31,7 +31,7 @@ def map_checks(case: Case) -> Iterator[Check]:
     torque = case.steps.torque
     if not isinstance(torque, TorqueMap):
         return
-    motion, spread = case.steps.motion(np.linspace(0, 2 * np.pi, 360, endpoint=False)), 0.0
+    motion, spread = case.steps.motion(kinematics.uniform_turn(360)), 0.0
     for joint in JOINTS:
         angle, rate = motion.joint_angle[joint], case.cadence * motion.joint_rate[joint]
         scalar, array = torque.feedback(joint), torque.moment(joint, angle, rate)
@@ -46,7 +46,7 @@ def muscle_checks(case: Case) -> Iterator[Check]:
     torque = case.steps.torque
     if not isinstance(torque, MuscleTorque):
         return
-    motion, cadence = case.steps.motion(np.linspace(0, 2 * np.pi, 90, endpoint=False)), case.cadence
+    motion, cadence = case.steps.motion(kinematics.uniform_turn(90)), case.cadence
     expected = pull(torque.riders, motion, cadence).moment
     rates = motion.joint_rate.map(lambda rate: cadence * rate)
     states, spread = np.column_stack([*motion.joint_angle, *rates]).tolist(), 0.0

@@ -14,12 +14,12 @@ from fes_mj.common.arrays import FloatArray
 from fes_mj.common.checks import Check
 from fes_mj.crosscheck.turn_case import Case
 from fes_mj.linkage.joints import PerJoint
-from fes_mj.linkage.kinematics import Motion
+from fes_mj.linkage.kinematics import Motion, uniform_turn
 from fes_mj.simulation.mjcf import REAL, Physics, joint_motion
 from fes_mj.statics.equilibrium import virtual_work
 
 Curves: TypeAlias = dict[str, FloatArray]  # method -> crank moment, N m, shape (angles,)
-EVERY_DEGREE = np.linspace(0, 2 * np.pi, 360, endpoint=False)
+EVERY_DEGREE = uniform_turn(360)
 NEARLY_MASSLESS = Physics(mass_scale=1e-3, gravity=0.0)
 
 

@@ -43,7 +43,7 @@ def test_at_a_constant_crank_speed_muscles_give_what_statics_say(name: str, solv
     assert np.ptp(trace.crank_speed) < 1e-4 * cadence
     static = MuscleStatic.solve(design, RIDERS, cadence, "best")
     power = (trace.muscle_work[-1] - np.interp(trace.time[-1] - turn, trace.time, trace.muscle_work)) / turn
-    assert power == pytest.approx(2 * static.powers[static.most_probable], rel=2e-3)
+    assert power == pytest.approx(2 * static.powers[static.stimulated.most_probable], rel=2e-3)
 
 
 def work(trace: Trace, rider: StimulatedRider) -> NDArray[np.floating]:

@@ -140,7 +140,7 @@ def test_the_brake_lets_the_muscles_keep_the_cadence(name: str) -> None:
     built, cadence, commands = (
         model("brake", "two-legs", name=name),
         design.linkage.cadence,
-        drive(design, moments).moment,
+        drive(design, moments),
     )
     data = mujoco.MjData(built)
     mujoco.mj_resetDataKeyframe(built, data, 0)
