@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from fes_mj.common.arrays import FloatArray, IntArray
+from fes_mj.common.arrays import FloatArray
 from fes_mj.fit.seats import POWER_EQUAL, SEAT_LIMITS, Scores, SeatLimits, Seats, losses, score
 from fes_mj.linkage.assembly import LEAST_CLEARANCE, grashof_margin
 from fes_mj.linkage.design import Design
@@ -38,28 +38,31 @@ def best_seats(
     low, high = (np.array(ends) for ends in zip(*limits, strict=True))
     legs, random = np.column_stack([thigh, shank]), np.random.default_rng(0)
 
-    def scored(seats: FloatArray) -> tuple[FloatArray, Scores]:
-        """Seats of each rider, shape (riders, seats, 3), as they can be set within the limits, and their scores."""
+    def scored(seats: FloatArray) -> FloatArray:
+        """Seats of each rider, shape (riders, seats, 3), as they can be set within the limits, and their scores below.
+
+        Shape (6, riders, seats).
+        """
         settable = np.clip(np.round(seats / _STEP) * _STEP, low, high)
-        return settable, _scores(design, legs, settable, table)
+        return np.concatenate([np.moveaxis(settable, -1, 0), _scores(design, legs, settable, table)])
+
+    def loss(seats: FloatArray, aim: int = 3, slack: float = POWER_EQUAL) -> FloatArray:
+        """Of these beside all that were tried."""
+        return losses(Scores(*seats[3:]), Scores(*tried[3:]), aim, slack)
 
     axes = [np.linspace(*ends, count) for ends, count in zip(limits, _GRID, strict=True)]
     grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
-    tried, known = scored(np.broadcast_to(np.vstack([np.zeros((1, 3)), grid]), (len(legs), len(grid) + 1, 3)))
+    tried = scored(np.broadcast_to(np.vstack([np.zeros((1, 3)), grid]), (len(legs), len(grid) + 1, 3)))
     for aim, count in enumerate(generations if np.any(low < high) else (), 1):  # a fixed seat is found
-        order = np.argsort(losses(known, known, aim, _SLACK), axis=1, kind="stable")
-        population, scores = _taken((tried, known), order[:, :_POPULATION])
+        order = np.argsort(loss(tried, aim, _SLACK), axis=1, kind="stable")
+        population = np.take_along_axis(tried, order[None, :, :_POPULATION], axis=2)
         for generation in range(count):
             slack = _SLACK * (POWER_EQUAL / _SLACK) ** min(1.0, generation / (_NARROWING * count))
-            trial, outcome = scored(_mutants(population, losses(scores, known, aim, slack), random))
-            tried = np.concatenate([tried, trial], axis=1)
-            known = Scores(*(np.concatenate(columns, axis=1) for columns in zip(known, outcome, strict=True)))
-            better = losses(outcome, known, aim, slack) <= losses(scores, known, aim, slack)
-            population = np.where(better[..., None], trial, population)
-            scores = Scores(*(np.where(better, new, old) for new, old in zip(outcome, scores, strict=True)))
-    best = losses(known, known).argmin(axis=1)[:, None]
-    seats, scores = _taken((tried, known), best)
-    return Seats(*seats[:, 0].T), Scores(*(column[:, 0] for column in scores))
+            trial = scored(_mutants(np.moveaxis(population[:3], 0, -1), loss(population, aim, slack), random))
+            tried = np.concatenate([tried, trial], axis=2)
+            population = np.where(loss(trial, aim, slack) <= loss(population, aim, slack), trial, population)
+    best = np.take_along_axis(tried, loss(tried).argmin(axis=1)[None, :, None], axis=2)[..., 0]
+    return Seats(*best[:3]), Scores(*best[3:])
 
 
 def _mutants(population: FloatArray, loss: FloatArray, random: np.random.Generator) -> FloatArray:
@@ -73,13 +76,6 @@ def _mutants(population: FloatArray, loss: FloatArray, random: np.random.Generat
     shape = (riders, members, 1)
     mutant = np.where(random.random(shape) < 0.5, best, base) + random.uniform(0.4, 1.0, shape) * (one - other)
     return np.where(random.random(population.shape) < 0.1, population, mutant)
-
-
-def _taken(known: tuple[FloatArray, Scores], columns: IntArray) -> tuple[FloatArray, Scores]:
-    """These seats of each rider, shape (riders, columns), and their scores."""
-    seats, scores = known
-    taken = Scores(*(np.take_along_axis(column, columns, axis=1) for column in scores))
-    return np.take_along_axis(seats, columns[..., None], axis=1), taken
 
 
 def _scores(design: Design, legs: FloatArray, seats: FloatArray, table: WorkTable) -> Scores:

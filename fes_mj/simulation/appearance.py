@@ -43,6 +43,13 @@ def define_parts(spec: Spec, parent: Spec) -> None:
         geom.size, geom.material = (part.size, 0, 0), name
 
 
+def on_body(leg: Leg, body: str) -> tuple[str, complex, float]:
+    """A leg's body in the model: its name, the leg's x axis and plane's y (m) in it; the legs share a crank."""
+    if body == "crank":
+        return "crank", complex(np.exp(-1j * leg.lag)), leg.lateral
+    return leg.prefix + body, 1 + 0j, 0.0
+
+
 def draw(spec: Spec, design: Design, legs: Sequence[Leg]) -> None:
     """Give every body of the assembled model its geoms, and the model the camera `side`, which sees the whole turn."""
     middle = float(np.mean([leg.lateral + leg.outwards * LAYERS["frame"] for leg in legs]))
@@ -65,14 +72,10 @@ def _bar(spec: Spec, body: str, part: str, name: str, start: tuple[complex, floa
 
 
 def _draw_bar(spec: Spec, bar: Bar, leg: Leg) -> None:
-    """A bar of the leg or of its linkage, in its layer; the legs share the crank, an arm each."""
-    name, across = leg.prefix + bar.name, leg.outwards * LAYERS.get(bar.body, LAYERS["leg"])
-    if bar.body == "crank":
-        arm = np.exp(-1j * leg.lag)
-        across += leg.lateral
-        _bar(spec, "crank", bar.part, name, (bar.start * arm, across), (bar.end * arm, across))
-    else:
-        _bar(spec, leg.prefix + bar.body, bar.part, name, (bar.start, across), (bar.end, across))
+    """A bar of the leg or of its linkage, in its layer."""
+    owner, arm, plane = on_body(leg, bar.body)
+    across = plane + leg.outwards * LAYERS.get(bar.body, LAYERS["leg"])
+    _bar(spec, owner, bar.part, leg.prefix + bar.name, (bar.start * arm, across), (bar.end * arm, across))
 
 
 def _draw_pins(spec: Spec, design: Design, leg: Leg, middle: float) -> None:
@@ -84,9 +87,8 @@ def _draw_pins(spec: Spec, design: Design, leg: Leg, middle: float) -> None:
         # drawn on the body that has the joint at its origin, or else at its tip
         at_origin = next((body for body in pair if BODIES.get(body, ("",))[0] == joint), None)
         body = at_origin or pair[0]
-        owner, point, plane = leg.prefix + body, 0j if at_origin else complex(design.link_lengths[body]), 0.0
-        if body == "crank":
-            owner, point, plane = "crank", point * np.exp(-1j * leg.lag), leg.lateral
+        owner, arm, plane = on_body(leg, body)
+        point = 0j if at_origin else complex(design.link_lengths[body]) * arm
         ends = sorted(layer[side] for side in pair if not (inside and side == "frame"))
         beyond, part = (LIMB_PIN_END, joint) if inside else (PIN_END, "pin")
         near, far = plane + ends[0] - beyond, plane + ends[-1] + beyond

@@ -252,12 +252,9 @@ def _close_loop(spec: Spec, design: Design, leg: Leg, cut: str, anchors: str) ->
     for body in architecture.joints[cut]:
         carrier = cut == "pedal" and body == architecture.pedal_body
         point = design.link_lengths[body] * (design.linkage.pedal_offset if carrier else 1.0)
-        if body == "crank":  # shared by the legs: theirs are two arms of it, in two planes
-            owner, pos = "crank", position(point * np.exp(-1j * leg.lag), leg.lateral)
-        else:
-            owner, pos = leg.prefix + body, position(point)
+        owner, arm, plane = appearance.on_body(leg, body)
         owners.append(owner)
-        sites.append(spec.body(owner).add_site(name=f"{leg.prefix}{body}_{cut}", pos=pos))
+        sites.append(spec.body(owner).add_site(name=f"{leg.prefix}{body}_{cut}", pos=position(point * arm, plane)))
     equality = spec.add_equality(spec.find_default("tricycle"), name=leg.prefix + cut, type=mujoco.mjtEq.mjEQ_CONNECT)
     if anchors == "bodies":
         # the second anchor follows from the pose in the file, which is assembled
