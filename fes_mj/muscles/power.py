@@ -71,14 +71,14 @@ def best_turn(
     return MuscleTurn(pulled, activation(windows, riders, cadence)), windows
 
 
-def best_power(riders: Riders, design: Design, cadence: float | None = None, duty: float = DUTY) -> FloatArray:
-    """Expected mean power of one leg on each design of a batch, stimulated at its best, W, shape (designs,).
+def best_power(riders: Riders, design: Design, duty: float = DUTY) -> FloatArray:
+    """Expected mean power of one leg on each design of a batch at its cadence, stimulated at its best, W.
 
-    cadence: rad/s, by default the designs' own. NaN for a linkage that does not turn.
+    Shape (designs,). NaN for a linkage that does not turn.
     """
 
     def power(block: Design) -> FloatArray:
-        speed = block.linkage.cadence if cadence is None else cadence
+        speed = block.linkage.cadence
         pulled = pull(riders, kinematics.solve(block, ANGLES), speed)
         return np.asarray(best_windows(pulled.power, riders, speed, duty)[1][0])
 

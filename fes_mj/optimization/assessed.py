@@ -2,7 +2,7 @@
 
 from dataclasses import asdict, dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from fes_mj.budget.answer import Answer, answer, riders_of
 from fes_mj.common.units import RPM
@@ -12,10 +12,8 @@ from fes_mj.linkage.joints import PerJoint
 from fes_mj.muscles.drive import Muscles
 from fes_mj.muscles.timing import DUTY
 from fes_mj.optimization.buildable import COMMON, Buildability
+from fes_mj.optimization.optimize import Optimum
 from fes_mj.statics.turn import DrivenTurn, QuasiStatic
-
-if TYPE_CHECKING:
-    from fes_mj.optimization.optimize import Optimum
 
 
 @dataclass(frozen=True)
@@ -67,11 +65,11 @@ class Assessed:
         joints = ((f"mean {joint} speed, deg/s", f"{speed:.1f}") for joint, speed in self.joint_speed.items())
         return [("cadence, rpm", f"{self.case.cadence / RPM:.1f}"), *joints]
 
-    def doubts(self, optimum: "Optimum") -> list[str]:
+    def doubts(self, optimum: Optimum) -> list[str]:
         """Why it may not be what was sought: what it leaves of the limits of what can be built, edges of the search."""
         return [*self.build.broken(optimum.problem.limits.build or COMMON).values(), *optimum.edges]
 
-    def summary(self, optimum: "Optimum") -> dict[str, Any]:
+    def summary(self, optimum: Optimum) -> dict[str, Any]:
         """The result as JSON names and units it; optimum: of the search that found the design."""
         case, static = self.case, self.case.static.summary()
         people = {"power_people_W": optimum.power, "riders": optimum.riders} if optimum.problem.people.count > 1 else {}

@@ -1,7 +1,7 @@
 """What a design found for muscles is worth: with all riders of the ensemble, beside a design that it had to beat."""
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -12,11 +12,9 @@ from fes_mj.muscles.drive import Muscles
 from fes_mj.muscles.rules import BEST
 from fes_mj.optimization.assessed import Assessed
 from fes_mj.optimization.buildable import Buildability
+from fes_mj.optimization.optimize import Optimum
 from fes_mj.optimization.stimulated import SEARCHED, MuscleDrive
 from fes_mj.statics.muscle_static import MuscleStatic
-
-if TYPE_CHECKING:
-    from fes_mj.optimization.optimize import Optimum
 
 
 @dataclass(frozen=True)
@@ -70,7 +68,7 @@ class MuscleWinner(Assessed):
             ("riders who gain, %", f"{100 * share:.0f}"),
         ]
 
-    def summary(self, optimum: "Optimum") -> dict[str, Any]:
+    def summary(self, optimum: Optimum) -> dict[str, Any]:
         """As Assessed.summary: power is that of all riders; what is simulated, with power_mode_W, the likeliest's."""
         turn, (mean, deviation, share) = self.turn.summary(), self.gain
         keys = ("drive", "timing", "power_mean_W", "power_sd_W", "power_mode_W", "work_per_turn_J", "windows_deg",

@@ -1,7 +1,7 @@
 """What a found design is worth: simulated, compared with the design it had to beat, sampled for tolerance."""
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -14,13 +14,11 @@ from fes_mj.linkage.variables import lengths, with_lengths
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.optimization.assessed import Assessed
 from fes_mj.optimization.buildable import Buildability
+from fes_mj.optimization.optimize import Optimum
 from fes_mj.riding.ride import Ride, steady_ripple
 from fes_mj.statics.cycles import cycles, joint_speeds
 from fes_mj.statics.turn import difference_sd, quasi_static
 from fes_mj.statics.work_table import WorkTable
-
-if TYPE_CHECKING:
-    from fes_mj.optimization.optimize import Optimum
 
 MANUFACTURING = 0.001  # m, each length and each coordinate of R1 and R7
 LEG = 0.05  # m, thigh and shank independently
@@ -138,7 +136,7 @@ class Winner(Assessed):
             cells.append((f"{name}: 5th percentile of power, W", f"{tolerance.power_low:.2f}"))
         return cells
 
-    def summary(self, optimum: "Optimum") -> dict[str, Any]:
+    def summary(self, optimum: Optimum) -> dict[str, Any]:
         """As Assessed.summary."""
         content = super().summary(optimum) | {
             "reversals_per_turn": dict(self.reversals.items()),
