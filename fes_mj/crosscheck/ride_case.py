@@ -160,19 +160,16 @@ class RideCase(Brief):
         results |= {"outside_known": outside_known(run.trace), "reduced": self.reference.summary()}
         if not self.agrees:
             results = dict.fromkeys(results) | {"verdict": NO_AGREEMENT}
-        return (
-            self.ride.summary()
-            | results
-            | {
-                "agrees": self.agrees,
-                "checks": [check.as_json() for check in self.checks],
-                "numerical_uncertainty": self.uncertainty,
-                "energy_lost_J": run.lost,
-                "loop_gap_max_m": run.loop_gap_max,
-                "timestep_s": run.timestep,
-                "versions": versions("fes-mj", "mujoco", "numpy"),
-            }
-        )
+        return self.ride.summary() | {
+            **results,
+            "agrees": self.agrees,
+            "checks": [check.as_json() for check in self.checks],
+            "numerical_uncertainty": self.uncertainty,
+            "energy_lost_J": run.lost,
+            "loop_gap_max_m": run.loop_gap_max,
+            "timestep_s": run.timestep,
+            "versions": versions("fes-mj", "mujoco", "numpy"),
+        }
 
     def trace_csv(self) -> str:
         """MuJoCo's ride as CSV, a row a time step, with the reference's speed at the same time."""

@@ -80,11 +80,8 @@ class JointMoments(Brief):
 
     def __getstate__(self) -> dict[str, Any]:
         """With all that linear algebra makes of them: its last bits depend on threads, a worker process has fewer."""
-        return (
-            self.__dict__
-            | {"coefficients": self.coefficients}
-            | ({} if self.covariance is None else {"deviations": self.deviations})
-        )
+        deviations = {} if self.covariance is None else {"deviations": self.deviations}
+        return self.__dict__ | {"coefficients": self.coefficients} | deviations
 
     def at(self, crank_angle: Any) -> PerJoint[FloatArray]:
         """Moments at crank angles from top dead centre, rad, any shape, N m."""

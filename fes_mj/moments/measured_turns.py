@@ -12,9 +12,10 @@ from fes_mj.common.errors import InputError
 from fes_mj.linkage.inertia import leg_moments
 from fes_mj.linkage.joints import JOINTS, PerJoint
 from fes_mj.linkage.kinematics import solve
-from fes_mj.moments.conventions import AngleSense, angle_sense
+from fes_mj.moments.conventions import AngleSense, Convention, angle_sense
 from fes_mj.moments.crank_angle import TimedTurn, timed_turns
 from fes_mj.moments.measurement_file import ANGLE_UNITS, Description
+from fes_mj.moments.reference_tricycle import ReferenceTricycle
 from fes_mj.moments.tables import OPENSIM, Table, load_table
 from fes_mj.moments.trial import by_crank, in_order, times
 from fes_mj.moments.turn import Turn
@@ -38,12 +39,16 @@ class CountedAngle:
 
 @dataclass(eq=False)
 class Recording:
-    """All that the files of a measurement hold.
+    """All that the files of a measurement hold, and what is declared of them.
 
+    convention: signs of extension. measured_on: the tricycle, its cadence declared (cadence_known) or assumed.
     crank_angle: as it stands in the first file, in `angle_unit`; None where the knee tells it. angles: how they are
     counted, of the joints whose angle is recorded.
     """
 
+    convention: Convention
+    measured_on: ReferenceTricycle
+    cadence_known: bool
     turns: list[Turn] = field(default_factory=list)
     crank_angle: FloatArray | None = None
     angle_unit: str = "deg"
@@ -55,7 +60,7 @@ def measured_turns(description: Description) -> Recording:
 
     Raises InputError naming file, line or key, value and what is allowed.
     """
-    recording = Recording()
+    recording = Recording(description.convention, description.measured_on, description.cadence_known)
     for number, path in enumerate(description.data):
         for source, table in _trials(description, number, path):
             if description.kinematics:
@@ -85,7 +90,8 @@ def _by_crank(description: Description, recording: Recording, table: Table, sour
     """Turns of a table with a crank angle: of a trial over time each, of other rows one or as many as they show."""
     crank, unit = description.columns["crank"], _angle_unit(description, table)
     used = _value_columns(description)
-    if timed := is_timed(description, table):
+    timed = table.path.suffix.lower() in OPENSIM or description.columns["time"] or table.time_column
+    if timed:  # a series over time
         table, time = times(table, description.columns["time"], description.time_unit, (crank, *used))
     given = bounded(table, crank, LARGEST_ANGLE)
     angle = description.sense * ANGLE_UNITS[unit] * given
@@ -152,11 +158,6 @@ def _require_rows(
             f"{kinematics}; the times here are {np.median(np.diff(time)):g} s apart, those there "
             f"{np.median(np.diff(moved)):g} s: is one of them in ms? Both must be in the same unit of time"
         )
-
-
-def is_timed(description: Description, table: Table) -> bool:
-    """Whether a table is a series over time."""
-    return bool(table.path.suffix.lower() in OPENSIM or description.columns["time"] or table.time_column)
 
 
 def bounded(table: Table, column: str, limit: float, scale: float = 1.0) -> FloatArray:

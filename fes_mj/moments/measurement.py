@@ -97,12 +97,10 @@ class Measurement:
 def load_measurement(path: Path) -> Measurement:
     """Read a CSV with the header COLUMNS, crank angle from top dead centre, or a measurement file (.toml)."""
     if path.suffix.lower() == ".toml":
-        description = Description.read(path)
-        recording, said = measured_turns(description), description.convention
-        return _measurement(path, recording, said, description.measured_on, description.cadence_known)
+        return _measurement(path, measured_turns(Description.read(path)))
     turns = _plain_turns(path)
     degrees = np.concatenate([np.degrees(turn.crank_angle) for turn in turns])
-    return _measurement(path, Recording(turns, degrees), _PLAIN, PAPER_TRICYCLE, False)
+    return _measurement(path, Recording(_PLAIN, PAPER_TRICYCLE, False, turns, degrees))
 
 
 def _plain_turns(path: Path) -> list[Turn]:
@@ -124,9 +122,7 @@ def measured_files(path: Path) -> list[Path]:
     return [path, *Description.read(path).files] if path.suffix.lower() == ".toml" else [path]
 
 
-def _measurement(
-    path: Path, recording: Recording, said: Convention, declared: ReferenceTricycle, cadence_said: bool
-) -> Measurement:
+def _measurement(path: Path, recording: Recording) -> Measurement:
     """Moments of one turn as they are; of several their mean, with the covariance of that mean."""
     for turn in recording.turns:
         if len(np.unique(np.mod(turn.crank_angle, 2 * np.pi))) < 2:
@@ -134,12 +130,11 @@ def _measurement(
             raise InputError(f"{path}: {count} at one crank angle; at least 2 crank angles are needed")
     cleaned = [without_spikes(turn) for turn in recording.turns]
     turns, spikes = [turn for turn, _ in cleaned], sum(count for _, count in cleaned)
-    cadence = recorded_cadence(turns)
-    measured_on = declared
-    if cadence is not None and not (cadence_said and cadence_agrees(turns, declared.cadence)):
-        measured_on = _at_cadence(path, declared, cadence)
+    cadence, measured_on = recorded_cadence(turns), recording.measured_on
+    if cadence is not None and not (recording.cadence_known and cadence_agrees(turns, measured_on.cadence)):
+        measured_on = _at_cadence(path, measured_on, cadence)
     declared_sd = None
-    name, known = printable(path.stem), cadence_said or cadence is not None
+    name, known = printable(path.stem), recording.cadence_known or cadence is not None
     if len(turns) > 1:
         rows = np.stack([coefficients(turn) for turn in turns])
         weights = weights_on(measured_on)
@@ -150,8 +145,7 @@ def _measurement(
     else:
         (turn,) = turns
         moments = JointMoments(name, turn.crank_angle, turn.knee, turn.hip, None, measured_on, known)
-    recording = replace(recording, turns=turns)
-    compared = tuple(comparisons(recording, moments, said, declared, cadence_said, spikes))
+    compared = tuple(comparisons(replace(recording, turns=turns), moments, spikes))
     misreadings = tuple(comparison.misreading for comparison in compared if not comparison.agrees)
     return Measurement(tuple(turns), replace(moments, misreadings=misreadings), compared, declared_sd)
 

@@ -26,25 +26,17 @@ _CONTRADICTION = 0.4  # of the curves' size: scatter that no rider shows from tu
 _OPEN = 0.25  # of a moment's range, between the last sample of a turn and its first
 
 
-def comparisons(
-    recording: Recording,
-    moments: JointMoments,
-    said: Convention,
-    declared: ReferenceTricycle,
-    cadence_said: bool,
-    spikes: int,
-) -> list[Comparison]:
+def comparisons(recording: Recording, moments: JointMoments, spikes: int) -> list[Comparison]:
     """All that can be compared, in the order of reading.
 
-    moments: those that were made of the recording. said: signs that are declared. declared: the tricycle with the
-    declared or assumed cadence. spikes: samples that were left out.
+    moments: those that were made of the recording. spikes: samples that were left out.
     """
-    turns = recording.turns
+    turns, said, declared = recording.turns, recording.convention, recording.measured_on
     return [
         *_crank_unit(recording),
         *(row for joint, counted in recording.angles.items() for row in counting(joint, counted, said)),
         *curves(turns, declared, recording.crank_angle is not None),
-        *_time(turns, declared, cadence_said),
+        *_time(turns, declared, recording.cadence_known),
         Comparison(
             "spikes", "samples left out", f"{spikes}", "none expected", not spikes, "spikes, alone among others"
         ),

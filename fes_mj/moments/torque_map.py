@@ -55,7 +55,9 @@ class TorqueMap:
 
     def at_source(self, joint: str, source: Any) -> FloatArray:
         """Moment in N m at crank angles of the measurement, rad from top dead centre, any shape."""
-        return _interpolated(self.table[joint], source)
+        table, position = self.table[joint], np.mod(source, 2 * np.pi) * (TABLE_SIZE / (2 * np.pi))
+        index = np.nan_to_num(position).astype(np.int64)
+        return np.asarray(table[index] + (position - index) * (table[index + 1] - table[index]))
 
     def feedback(self, joint: str) -> Callable[[float, float], float]:
         """The same map for plain floats, (angle, rate) -> moment; twenty times faster for one value at a time."""
@@ -125,10 +127,3 @@ def scalar_map(
 
     result: Callable[[Any, Any, float, float], float] = compiled(moment)
     return result
-
-
-def _interpolated(table: FloatArray, source: Any) -> FloatArray:
-    """Value of a table over GRID at crank angles of the measurement, rad from top dead centre."""
-    position = np.mod(source, 2 * np.pi) * (TABLE_SIZE / (2 * np.pi))
-    index = np.nan_to_num(position).astype(np.int64)
-    return np.asarray(table[index] + (position - index) * (table[index + 1] - table[index]))

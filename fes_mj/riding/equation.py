@@ -160,10 +160,8 @@ def rates_of(system: System, state: State, mode: Mode) -> tuple[State, float]:
         push = crank - (inertia - travel * recoil) * turning
     elif mode.direction != 0:
         determinant = inertia * mass - recoil * recoil
-        turning, rolling = (
-            (mass * crank + recoil * wheel) / determinant,
-            (recoil * crank + inertia * wheel) / determinant,
-        )
+        turning = (mass * crank + recoil * wheel) / determinant
+        rolling = (recoil * crank + inertia * wheel) / determinant
         push = 0.0
     else:
         turning, rolling = crank / inertia, 0.0

@@ -117,10 +117,8 @@ def _causes(design: Design) -> Iterator[tuple[str, dict[str, Any]]]:
     yield f"y is down in this sketch; here it is up: change the sign of y in {both}", flipped
     turned = {"ground": -ground, "pivot_to_crank": -arm}
     yield f"x is forwards and y down in this sketch; change the signs of both in {both}", turned
-    yield (
-        f"the seat angle is measured from the other side; seat_angle = {180 - np.degrees(seat):g}",
-        {"seat_angle": np.pi - seat},
-    )
+    measured = f"the seat angle is measured from the other side; seat_angle = {180 - np.degrees(seat):g}"
+    yield measured, {"seat_angle": np.pi - seat}
     if design.linkage.kind != "trt":
         other = next(branch for branch in BRANCHES if branch != design.linkage.branch)
         yield f'the rocker joint lies on the other side; branch = "{other}"', {"branch": other}
