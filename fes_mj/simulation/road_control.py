@@ -23,10 +23,9 @@ from fes_mj.simulation.stepping import drive_addresses
 class RoadControl(NamedTuple):
     """What the control knows of a ride and its model; arrays by DRIVEN.
 
-    travel: m/rad. road, crank, crank_speed: addresses of the joints' positions and of a speed; so position, speed and,
-    of the motors, actuator. leg_lag: rad. knee, hip: their rows, by leg. moment: N m over a turn of the own leg's
-    crank, shape (4, cells + 1); of a ride by muscles none, but `muscles` and their `stimulator`. rising, falling:
-    step.weights of a time step.
+    travel: m/rad. road, crank, crank_speed: addresses of the joints' positions and of a speed; drives: those of
+    drive_addresses, shape (4, 3). leg_lag: rad. moment: N m over a turn of the own leg's crank, shape (4, cells + 1);
+    of a ride by muscles none, but `muscles` and their `stimulator`. rising, falling: step.weights of a time step.
     """
 
     fixed: bool
@@ -34,12 +33,8 @@ class RoadControl(NamedTuple):
     road: int
     crank: int
     crank_speed: int
-    position: IntArray
-    speed: IntArray
-    actuator: IntArray
+    drives: IntArray
     leg_lag: FloatArray
-    knee: IntArray
-    hip: IntArray
     moment: FloatArray
     muscles: LegMuscles
     stimulator: Stimulator
@@ -79,7 +74,6 @@ def road_control(ride: Ride, model: mujoco.MjModel) -> RoadControl:
         moments = np.array([np.append(curve, curve[0]) for curve in (drives[leg][joint] for leg, joint in DRIVEN)])
     else:
         muscles, stimulator = LegMuscles.of(drive.riders, ride.design.rider), drive.stimulator
-    addresses = np.array([drive_addresses(model, leg.prefix + joint) for leg, joint in DRIVEN])
     crank = model.joint("crank")
     return RoadControl(
         fixed=ride.fixed,
@@ -87,12 +81,8 @@ def road_control(ride: Ride, model: mujoco.MjModel) -> RoadControl:
         road=int(model.joint(ROAD).qposadr[0]),
         crank=int(crank.qposadr[0]),
         crank_speed=int(crank.dofadr[0]),
-        position=addresses[:, 1].copy(),
-        speed=addresses[:, 2].copy(),
-        actuator=addresses[:, 0].copy(),
+        drives=np.array([drive_addresses(model, leg.prefix + joint) for leg, joint in DRIVEN]),
         leg_lag=np.array([leg.lag for leg, _ in DRIVEN]),
-        knee=np.array([row for row, (_, joint) in enumerate(DRIVEN) if joint == "knee"]),
-        hip=np.array([row for row, (_, joint) in enumerate(DRIVEN) if joint == "hip"]),
         moment=moments,
         muscles=muscles,
         stimulator=stimulator,
@@ -119,7 +109,7 @@ def act(control: RoadControl, memory: Memory, qpos: Any, speeds: Any, ctrl: Any)
     for driven in range(len(control.moment)):
         curve = control.moment[driven]
         row, part = place(angle - control.leg_lag[driven], len(curve) - 1)
-        ctrl[control.actuator[driven]] = between(curve, row, part)
+        ctrl[control.drives[driven][0]] = between(curve, row, part)
     if len(control.muscles.group) > 0:
         for leg in range(len(memory.activation)):
             pull(control, memory, leg, qpos, speeds, ctrl)
@@ -128,20 +118,15 @@ def act(control: RoadControl, memory: Memory, qpos: Any, speeds: Any, ctrl: Any)
 @inlined_machine_code
 def pull(control: RoadControl, memory: Memory, leg: int, qpos: Any, speeds: Any, ctrl: Any) -> None:
     """Set the moments of a leg's muscles."""
-    knee, hip = control.knee[leg], control.hip[leg]
-    angle, activation, before = qpos[control.crank] - control.leg_lag[knee], memory.activation[leg], memory.felt[leg]
-    felt = angle + lead(control.stimulator, speeds[control.crank_speed])
+    row, activation, before = 2 * leg, memory.activation[leg], memory.felt[leg]  # of DRIVEN: the knee, then the hip
+    knee, knee_at, knee_rate = control.drives[row]
+    hip, hip_at, hip_rate = control.drives[row + 1]
+    felt = qpos[control.crank] - control.leg_lag[row] + lead(control.stimulator, speeds[control.crank_speed])
     for group in range(len(activation)):
         now = stimulation(control.stimulator.stimulus, group, felt)
         if not math.isnan(before[group]):
             activation[group] = activated(activation[group], before[group], now, control.rising, control.falling)
         before[group] = now
-    moments = joint_moments(
-        control.muscles,
-        activation,
-        qpos[control.position[knee]],
-        qpos[control.position[hip]],
-        speeds[control.speed[knee]],
-        speeds[control.speed[hip]],
+    ctrl[knee], ctrl[hip] = joint_moments(
+        control.muscles, activation, qpos[knee_at], qpos[hip_at], speeds[knee_rate], speeds[hip_rate]
     )
-    ctrl[control.actuator[knee]], ctrl[control.actuator[hip]] = moments
