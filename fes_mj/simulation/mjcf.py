@@ -128,7 +128,8 @@ def build_mjcf(
     root = spec.worldbody.add_body(name="tricycle", childclass="tricycle")
     scale = physics.mass_scale
     masses = {body: Inertia(scale * m, centre, scale * i) for body, (m, centre, i) in inertias(design).items()}
-    masses["crank"] = combine(*(_turned(masses["crank"], -leg.lag) for leg in pair))
+    arm, turns = masses["crank"], [appearance.on_body(leg, "crank")[1] for leg in pair]
+    masses["crank"] = combine(*(arm._replace(centre=arm.centre * turn) for turn in turns))
     crank = add_body(root, "crank", position(design.linkage.crank_centre), masses["crank"])
     crank.add_site(name="crank_torque")
     state = {"crank": (0.0, cadence)}
@@ -160,10 +161,6 @@ def joint_motion(motion: Motion) -> dict[str, tuple[Any, Any, Any]]:
         joints["rocker"] = (np.angle(rocker), *rotation["rocker"])
         joints["coupler"] = (np.angle(coupler / rocker), *(rotation["coupler"] - rotation["rocker"]))
     return joints
-
-
-def _turned(inertia: Inertia, angle: float) -> Inertia:
-    return inertia._replace(centre=inertia.centre * complex(math.cos(angle), math.sin(angle)))
 
 
 def set_options(spec: Spec, timestep: float, gravity: float, integrator: str = "discrete") -> None:

@@ -1,6 +1,7 @@
 """What a sweep finds out about each of its points: statics in a batch, a turn of riders and a simulated turn each."""
 
-from typing import TYPE_CHECKING, Any, TypeAlias
+from dataclasses import replace
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,9 +27,6 @@ from fes_mj.statics.turn import turn_points
 from fes_mj.statics.validity import obstacles
 from fes_mj.statics.work_table import WorkTable, uncertain_table
 from fes_mj.sweep.study import NAMES, Study
-
-if TYPE_CHECKING:
-    from fes_mj.simulation.bench import BenchOptions
 
 Columns: TypeAlias = dict[str, NDArray[Any]]
 
@@ -174,7 +172,7 @@ def _dynamic(batch: Design, rpm: FloatArray | None, drive: Drive, study: Study, 
     rpm: cadences, if they are not the designs' own. Of muscles it is the most probable rider. Why a run breaks down, is
     refused or does not agree with statics goes to `why`.
     """
-    from fes_mj.simulation.bench import simulate
+    from fes_mj.simulation.bench import BenchOptions, simulate
 
     result = {name: np.full(len(why), np.nan) for name in _DYNAMIC}
     for row in np.flatnonzero(why == ""):
@@ -182,15 +180,12 @@ def _dynamic(batch: Design, rpm: FloatArray | None, drive: Drive, study: Study, 
         speed = crank_speed(design, None if rpm is None else float(rpm[row]) * RPM)
         try:
             torque = torque_source(drive, design, speed)
-            static = _power(design, torque, speed)
-            run = simulate(
-                design,
-                drive,
-                cadence=speed,
-                timestep=study.timestep,
-                legs=study.legs,
-                options=_options(torque),
-            )
+            static, options = _power(design, torque, speed), BenchOptions(torque=torque)
+            if isinstance(torque, TorqueMap):
+                from fes_mj.simulation.compiled import compiled_loop
+
+                options = replace(options, make_loop=compiled_loop)
+            run = simulate(design, drive, cadence=speed, timestep=study.timestep, legs=study.legs, options=options)
         except (UnstableError, InputError) as error:  # it breaks down, or needs more steps than there may be
             why[row] = str(error).removeprefix(f"{design.name}: ")
             continue
@@ -201,17 +196,6 @@ def _dynamic(batch: Design, rpm: FloatArray | None, drive: Drive, study: Study, 
         for name, value in zip(result, measured, strict=True):
             result[name][row] = value
     return result
-
-
-def _options(torque: TorqueSource) -> "BenchOptions":
-    """Of a run under a torque map in machine code, of muscles not."""
-    from fes_mj.simulation.bench import BenchOptions
-
-    if not isinstance(torque, TorqueMap):
-        return BenchOptions(torque=torque)
-    from fes_mj.simulation.compiled import compiled_loop
-
-    return BenchOptions(make_loop=compiled_loop, torque=torque)
 
 
 def _power(design: Design, torque: TorqueSource, cadence: float) -> float:
