@@ -6,8 +6,7 @@ from typing import Annotated, Literal, NamedTuple
 
 from cyclopts import Group, Parameter
 
-from fes_mj.cli.options import LoadOptions, MomentsOptions, needs, speed_at
-from fes_mj.common.errors import InputError
+from fes_mj.cli.options import DRIVEN_BY, WHOSE, LoadOptions, MomentsOptions, needs, speed_at
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.design_file import load_design
 from fes_mj.muscles.drive import Muscles
@@ -25,7 +24,7 @@ class Driven(NamedTuple):
     cadence: float
 
 
-_MUSCLES = Group("Muscles", validator=needs("--drive"))
+_MUSCLES = Group("Muscles", validator=needs("--drive", "muscles"))
 
 
 @Parameter(name="*", group=_MUSCLES)
@@ -41,19 +40,17 @@ class DriveOptions:
         muscles: An ensemble of riders (.npz) instead of the group's.
     """
 
-    drive: Literal["moments", "muscles"] = "moments"
+    drive: Annotated[Literal["moments", "muscles"], Parameter(group=(_MUSCLES, DRIVEN_BY))] = "moments"
     timing: Literal["best", "measured", "by-angle", "stimulation-by-angle"] = "best"
     duty: Annotated[float, Parameter(show_default=lambda share: f"{360 * share:.0f}/360")] = DUTY
-    muscles: Path | None = None
+    muscles: Annotated[Path | None, Parameter(group=(_MUSCLES, WHOSE, DRIVEN_BY))] = None
+
+    def inputs(self, options: MomentsOptions, *designs: str) -> list[Path]:
+        """The files that a command with these options and designs reads, which none of its outputs may replace."""
+        return [*options.inputs(*designs), *([self.muscles] if self.muscles else [])]
 
     def load_riders(self, options: MomentsOptions) -> Riders:
-        """Whose muscles. Raises InputError for moments of which no muscles are known."""
-        if options.moments and not self.muscles:
-            trial = options.moments[0]
-            raise InputError(
-                f"--moments say nothing of muscles; `fes_mj moments {trial} --fit-muscles -o RIDER.npz` finds muscles "
-                "that may have given them, for --muscles RIDER.npz"
-            )
+        """Whose muscles. Raises InputError for a file that has none."""
         return load_riders(self.muscles or options.group or "p1p2")
 
     def load_muscles(self, options: MomentsOptions) -> Muscles:
@@ -74,9 +71,9 @@ class DriveOptions:
         return MuscleStatic.solve(design, muscles.riders, speed, muscles.timing, muscles.duty, options.legs)
 
 
-@Parameter(name="*", group=Group("Muscles"))
+@Parameter(name="*")
 @dataclass
 class MusclesFirst(DriveOptions):
     """The same where muscles drive unless moments are asked for."""
 
-    drive: Literal["moments", "muscles"] = "muscles"
+    drive: Annotated[Literal["moments", "muscles"], Parameter(group=(_MUSCLES, DRIVEN_BY))] = "muscles"

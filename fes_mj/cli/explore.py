@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 from cyclopts import Parameter
 from cyclopts.validators import Number
 
-from fes_mj.cli.options import DesignName, Flag, MomentsOptions
+from fes_mj.cli.options import DRIVEN_BY, DesignName, Flag, MomentsOptions
 from fes_mj.common.errors import InputError, require_extra
 from fes_mj.linkage.design_file import load_design
 
@@ -20,7 +20,7 @@ def explore(
     port: Annotated[int, Parameter(validator=Number(gte=0, lte=65535))] = PORT,
     host: str = THIS_MACHINE,
     browser: bool = True,
-    drive: Literal["moments", "muscles"] = "moments",
+    drive: Annotated[Literal["moments", "muscles"], Parameter(group=("Parameters", DRIVEN_BY))] = "moments",
     debug: Flag = False,
 ) -> None:
     """Drag the dimensions of a design in the browser and see at once what they do, until Ctrl-C.

@@ -141,7 +141,7 @@ def _files(out: Path, options: SearchOptions) -> dict[str, Path]:
 
 def _check_files(out: Path | None, report: Path | None, options: SearchOptions) -> None:
     """Refuse files that could not or must not be written, before anything runs."""
-    inputs = options.inputs()
+    inputs = options.drive.inputs(options)
     require_writable(out, "the design", ".toml", inputs)
     for key, path in _files(out, options).items() if out else ():
         if path != out:

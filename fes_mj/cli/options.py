@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple, TypeAlias
 
-from cyclopts import ArgumentCollection, Group, Parameter
+from cyclopts import Argument, ArgumentCollection, Group, Parameter
 from cyclopts.validators import Number, all_or_none, mutually_exclusive
 
 from fes_mj.common.console import complain, print_json, say
@@ -31,13 +31,21 @@ def bounds(variable: str) -> Callable[[Any, Any], None]:
     return check
 
 
-def needs(flag: str) -> Callable[[ArgumentCollection], None]:
-    """A validator of a group whose options mean nothing without one of them."""
+def value_of(argument: Argument) -> Any:
+    """Of an option, its default where it is not given."""
+    return argument.value if argument.tokens else argument.field_info.default
+
+
+def needs(flag: str, *values: str) -> Callable[[ArgumentCollection], None]:
+    """A validator of a group whose options mean nothing without one of them, or unless it has one of some values."""
 
     def check(arguments: ArgumentCollection) -> None:
-        names = [argument.name for argument in arguments.filter_by(value_set=True) if argument.name.startswith("--")]
-        if names and flag not in names:
-            raise ValueError(f"{names[0]} needs {flag}.")
+        value = next(value_of(argument) for argument in arguments if argument.name == flag)
+        if value in values if values else value:
+            return
+        for argument in arguments:
+            if argument.tokens and argument.name != flag:
+                raise ValueError(f"{argument.name} needs {' '.join([flag, ' or '.join(values)]).rstrip()}.")
 
     return check
 
@@ -58,7 +66,21 @@ Dims: TypeAlias = Annotated[
 Seed: TypeAlias = Annotated[int, Parameter(validator=Number(gte=0))]
 Jobs: TypeAlias = Annotated[int, Parameter(validator=Number(gte=1))]
 PeopleOfEachSex: TypeAlias = Annotated[int, Parameter(validator=Number(gte=10, lte=100_000))]
-_WHOSE = Group("Joint moments", validator=mutually_exclusive)
+_MOMENTS = Group("Joint moments")
+
+
+def _no_muscles(arguments: ArgumentCollection) -> None:
+    """A validator: own moments say nothing of muscles."""
+    values = {argument.name: value_of(argument) for argument in arguments}
+    if values.get("--drive") == "muscles" and values.get("--moments") and not values.get("--muscles"):
+        raise ValueError(
+            f"--moments say nothing of muscles; `fes_mj moments {values['--moments'][0]} --fit-muscles -o RIDER.npz` "
+            "finds muscles that may have given them, for --muscles RIDER.npz"
+        )
+
+
+WHOSE = Group("joint moments or muscles", show=False, validator=mutually_exclusive)
+DRIVEN_BY = Group("what drives", show=False, validator=_no_muscles)
 
 
 class Loaded(NamedTuple):
@@ -81,9 +103,11 @@ class MomentsOptions:
             top dead centre), or a measurement file (.toml). With two legs given twice, the right leg's first.
     """
 
-    group: Annotated[Literal["p1p2", "p1p3"] | None, Parameter(group=_WHOSE)] = None
+    group: Annotated[Literal["p1p2", "p1p3"] | None, Parameter(group=(_MOMENTS, WHOSE))] = None
     # a name may begin like a JSON list
-    moments: Annotated[list[Path] | None, Parameter(group=_WHOSE, json_list=False, negative="")] = None
+    moments: Annotated[
+        list[Path] | None, Parameter(group=(_MOMENTS, WHOSE, DRIVEN_BY), json_list=False, negative="")
+    ] = None
 
     def load_moments(self, legs: int = 1) -> JointMoments:
         """The joint moments that the options name; says what looks misread. Raises InputError for what is unusable."""

@@ -99,7 +99,7 @@ def ride(
             made if its parent exists.
         render: Write a video (.mp4) of the ride beside speed and crank power.
     """
-    loaded, inputs = options.load(design, drive), options.inputs(design)
+    loaded, inputs = options.load(design, drive), drive.inputs(options, design)
     require_writable(render, "the video", ".mp4", inputs)
     if out and starts:
         require_extra("video", "matplotlib")

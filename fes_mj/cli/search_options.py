@@ -19,7 +19,7 @@ from fes_mj.linkage.riders import SAMPLES
 
 Methods = Literal["differential-evolution", "cma-es", "nsga-ii", "random-pursuit"]
 _Speed = Annotated[float, Parameter(validator=Number(gt=0))]
-_PEOPLE = Group("People", validator=needs("--riders"))
+_PEOPLE = Group("People", validator=needs("--riders", "population", "population-p10"))
 _PACKAGES = {"cma-es": "cma", "nsga-ii": "pymoo"}
 _WITHOUT_EFFECT = ("json", "quiet", "jobs", "cluster", "print_problem")  # on what is found
 
@@ -154,8 +154,8 @@ class SearchOptions(PrintOptions, MomentsOptions):
 
     def inputs(self, *designs: str) -> list[Path]:
         """The files that the options name, which no output may replace."""
-        named = (self.like, self.start, self.speeds_of, self.problem, self.drive.muscles)
-        return [*(Path(name) for name in named if name), *super().inputs(*designs)]
+        named = [name for name in (self.like, self.start, self.speeds_of) if name]
+        return [*([self.problem] if self.problem else []), *super().inputs(*designs, *named)]
 
     def command(self, kind: str) -> str:
         """The command line, for a shell, that finds the same again with this version: what is not by default."""

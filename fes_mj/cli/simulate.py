@@ -57,7 +57,7 @@ def simulate(
         speed: Of the video: 1 is the true one. By default a turn takes 4 s.
         view: Then watch it run in MuJoCo's interactive viewer, with two legs, where there is a screen.
     """
-    loaded, inputs = drive.load(options, design), options.inputs(design)
+    loaded, inputs = drive.load(options, design), drive.inputs(options, design)
     require_writable(render, "the video", ".mp4", inputs)
     if speed is not None:
         _check_speed(speed, loaded.cadence)

@@ -69,9 +69,8 @@ def static(
     def source() -> dict[str, Any]:
         from fes_mj.common.provenance import provenance
 
-        return {
-            "provenance": provenance([design_path(name, options.dims) for name in (design, *others)] + options.inputs())
-        }
+        designs = [design_path(name, options.dims) for name in (design, *others)]
+        return {"provenance": provenance(designs + drive.inputs(options))}
 
     if others:
         options.show(

@@ -44,7 +44,7 @@ def stimulation(
         out: Draw the page (.svg, .pdf or .png); may be given several times.
     """
     loaded, pages = load_design(design, dims), out or []
-    inputs = [Path(design), *([drive.muscles] if drive.muscles else [])]
+    inputs = drive.inputs(whose, design)
     require_writable(csv, "the windows", ".csv", inputs)
     for page in pages:
         require_writable(page, "the page", PAGES, inputs)

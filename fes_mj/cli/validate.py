@@ -62,7 +62,7 @@ def validate(
         others = {"DESIGN": designs, "--report": report, "--junit": junit, "--faults": faults, "--quick": quick}
         return report_against(against, options, others)
     cases = list(_cases(designs or DESIGNS, options, drive, quick))
-    _check_files(report, junit, video, options.inputs(*designs))
+    _check_files(report, junit, video, drive.inputs(options, *designs))
     checks = _run_checks(cases, quick, options)
     detections = _inject(designs[0] if designs else FAULTY_DESIGN, options, drive) if faults else ()
     broken = {check.subject for check in checks if check.name == "stability" and not check.ok}

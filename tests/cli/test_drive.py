@@ -77,7 +77,10 @@ def test_own_riders_are_those_of_the_file(capsys, tmp_path):
     ("arguments", "said"),
     [
         (("--timing", "best"), "--drive"),
-        (("--duty", "0.2"), "--duty needs --drive"),
+        (("--duty", "0.2"), "--duty needs --drive muscles"),
+        (("--drive", "moments", "--timing", "measured"), "--timing needs --drive muscles"),
+        ((*MUSCLES, "--muscles", "r.npz", "--moments", "m.csv"), "exclusive arguments: {--moments, --muscles}"),
+        ((*MUSCLES, "--muscles", "r.npz", "--group", "p1p3"), "exclusive arguments: {--group, --muscles}"),
         ((*MUSCLES, "--duty", "0"), "duty is 0"),
         ((*MUSCLES, "--duty", "1.5"), "duty is 1.5"),
         ((*MUSCLES, "--moments", "mine.csv"), "--muscles"),
@@ -89,6 +92,22 @@ def test_what_does_not_go_together_is_refused_in_one_line(capsys, arguments, sai
     assert (code, out) == (2, "")
     assert said in err
     assert len(err.strip().splitlines()) == 1
+
+
+@pytest.mark.parametrize("command", ["static", "simulate", "ride", "validate", "explore", "stimulation"])
+def test_own_moments_have_no_muscles_but_those_that_fit_them(capsys, command):
+    code, out, err = result(capsys, command, "d1", *MUSCLES, "--moments", "mine.csv")
+    assert (code, out) == (2, "")
+    assert "`fes_mj moments mine.csv --fit-muscles -o RIDER.npz`" in err
+
+
+@pytest.mark.parametrize(
+    "option", [("--timing", "measured"), ("--duty", "0.1"), ("--muscles", "r.npz"), ("--timing", "best")]
+)
+def test_moments_take_no_options_of_muscles_where_these_are_the_default(capsys, option):
+    code, out, err = result(capsys, "ride", "d1", "--drive", "moments", *option)
+    assert (code, out) == (2, "")
+    assert f"{option[0]} needs --drive muscles." in err
 
 
 def test_optimize_finds_a_design_for_muscles(capsys, tmp_path):

@@ -136,6 +136,7 @@ def test_own_moments_have_no_error_bar(tmp_path: Path, capsys: pytest.CaptureFix
         (["cdt", "--ripple-limit", "0"], '"0.0" for --ripple-limit. Must be > 0.'),
         (["cdt", "--ripple-limit", "nan"], '"nan" for --ripple-limit'),
         (["cdt", "--samples", "100"], "--samples needs --riders"),
+        (["cdt", "--riders", "one", "--samples", "100"], "--samples needs --riders population or population-p10"),
         (["cdt", "--riders", "population", "--samples", "1"], '"1" for --samples. Must be >= 10.'),
         (["cdt", "--riders", "population", "--sample-seed", "-1"], '"-1" for --sample-seed. Must be >= 0.'),
         (["cdt", "--riders", "population-p10", "--caution", "1"], "is an objective of its own: not with --caution"),
