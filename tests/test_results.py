@@ -15,7 +15,7 @@ from fes_mj.common.units import RPM
 from fes_mj.simulation.time_step import steps_per_turn
 from studies.time_step import CADENCES
 
-RESULTS = Path(__file__).parents[2] / "results"
+RESULTS = Path(__file__).parents[1] / "results"
 MACHINE = re.compile(r' *"(command|python)": ')
 NUMBER = re.compile(r"[+-]?\d[\d,]*(?:\.\d+)?(?:e[+-]?\d+)?")
 

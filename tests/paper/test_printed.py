@@ -1,4 +1,4 @@
-"""Against what the paper and Szecsi et al. print: identified dimensions, recovered moments, powers."""
+"""Consistency with what the paper and Szecsi et al. print: identified dimensions, recovered moments, powers."""
 
 import math
 
@@ -11,10 +11,8 @@ from fes_mj.moments.joint_moments import GROUPS
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.paper.evidence import functional, load_evidence
 from fes_mj.paper.identification import identify
-from fes_mj.paper.printed import table1
+from fes_mj.paper.printed import SIX_BARS, table1
 from fes_mj.paper.reconstruction import choose_hyperparameters, condition
-
-SIX_BARS = ("r1", "r2", "d1", "d2")
 
 
 @pytest.mark.parametrize("name", SIX_BARS)
