@@ -114,5 +114,5 @@ def test_legs_with_moments_of_their_own_are_fitted_together() -> None:
 def test_legs_measured_on_different_tricycles_are_not_averaged() -> None:
     right, other = fes_mj.load_moments("p1p2"), fes_mj.load_moments("p1p3")
     tricycle = replace(PAPER_TRICYCLE, design=PAPER_TRICYCLE.design.with_linkage(crank=0.16))
-    with pytest.raises(InputError, match="measured on different tricycles"):
+    with pytest.raises(InputError, match=r"^p1p2, p1p3: "):
         WorkTable.of(replace(right, left=replace(other, measured_on=tricycle)))

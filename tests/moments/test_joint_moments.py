@@ -60,7 +60,7 @@ def test_unreadable_files(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="Is a directory"):
         load_moments(tmp_path)
     (tmp_path / "binary.csv").write_bytes(b"\xff\xfe\x00")
-    with pytest.raises(InputError, match=r"no text table; .*CSV"):
+    with pytest.raises(InputError, match=r"binary\.csv: .*CSV"):
         load_moments(tmp_path / "binary.csv")
 
 
@@ -79,5 +79,5 @@ def test_a_worker_process_gets_what_linear_algebra_made_of_them() -> None:
 def test_moments_of_unknown_error_have_no_deviations(tmp_path: Path) -> None:
     path = tmp_path / "mine.csv"
     path.write_text(HEADER + "0,1,1\n120,2,2\n240,3,3\n")
-    with pytest.raises(InputError, match="mine: nothing is known of the error"):
+    with pytest.raises(InputError, match=r"^mine: .* error"):
         _ = load_moments(path).deviations

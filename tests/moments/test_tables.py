@@ -86,18 +86,18 @@ def test_names_of_the_time(name: str, unit: str | None, tmp_path: Path) -> None:
 def test_other_files_are_refused_with_the_way_out(suffix: str, tmp_path: Path) -> None:
     path = tmp_path / f"a{suffix}"
     path.write_bytes(b"MATLAB 5.0 MAT-file\377\376")
-    with pytest.raises(InputError, match=rf"a\{suffix}: this is no text table; .*CSV.*\.sto.*; \w"):
+    with pytest.raises(InputError, match=rf"a\{suffix}: .*CSV.*\.sto.*; \w"):
         load_table(path, "moments")
     (renamed := tmp_path / "a.csv").write_bytes(b"PK\3\4\0\0")
-    with pytest.raises(InputError, match=r"a\.csv: this is no text table"):
+    with pytest.raises(InputError, match=r"a\.csv: .*CSV"):
         load_table(renamed, "moments")
 
 
 REFUSED = {
     "nRows": ("x\nnRows=282\nendheader\ntime\tknee\thip\n" + lines("\t"), r"nRows=282, 3 rows"),
     "datarows": ("x\ndatarows 282\nendheader\ntime\tknee\thip\n" + lines("\t"), r"datarows 282, 3 rows"),
-    "a number": ("time,knee\n" + "0.25,1.125\n" * 12 + "0.5,1.1", r"line 14 ends within a number, knee '1\.1'"),
-    "a row": ("time,knee,hip\n" + lines(",") + "1.5,2", r"line 5 has 2 values; the header names 3 columns"),
+    "a number": ("time,knee\n" + "0.25,1.125\n" * 12 + "0.5,1.1", r"line 14 .* knee '1\.1'"),
+    "a row": ("time,knee,hip\n" + lines(",") + "1.5,2", r"line 5 .*\b2\b.*\b3\b"),
 }
 
 
@@ -119,15 +119,13 @@ def test_a_file_without_a_line_end_is_whole(tmp_path: Path) -> None:
 @pytest.mark.parametrize("cell", ["", "nan"])
 def test_a_sample_that_is_missing_is_to_be_taken_out(tmp_path: Path, cell: str) -> None:
     (path := tmp_path / "a.csv").write_text(f"time,knee\n0,1\n1,{cell}\n2,3\n")
-    with pytest.raises(InputError, match=r"line 3: knee is .*; take rows without a measurement out"):
+    with pytest.raises(InputError, match=rf"a\.csv: line 3: knee is '{cell}'"):
         load_table(path, "moments").column("knee")
 
 
 def test_a_column_that_is_nearly_there_is_named(tmp_path: Path) -> None:
     (path := tmp_path / "a.csv").write_text("time,Knee_Nm,hip\n" + lines(","))
-    with pytest.raises(
-        InputError, match=r"no column 'knee_Nm'; the header names time, Knee_Nm, hip; is it 'Knee_Nm'\?"
-    ):
+    with pytest.raises(InputError, match=r"a\.csv: .*'knee_Nm'.* time, Knee_Nm, hip;.* 'Knee_Nm'"):
         load_table(path, "moments").column("knee_Nm")
 
 
@@ -135,7 +133,7 @@ def test_long_cells(tmp_path: Path) -> None:
     (path := tmp_path / "a.csv").write_text(f"time,knee,note\n0,{'1' * 140_000},{'x' * 140_000}\n")
     table = load_table(path, "moments")
     assert table.column("time").tolist() == [0]
-    with pytest.raises(InputError, match=r"line 2: knee is '1{40}\.\.\.'; it must be a finite number"):
+    with pytest.raises(InputError, match=r"line 2: knee is '1{40}\.\.\.'"):
         table.column("knee")
 
 

@@ -106,12 +106,12 @@ def test_only_timings_with_windows_can_be_ridden() -> None:
     assert static is not None
     assert static["quadriceps"] is not None
     assert on == static["quadriceps"][0]
-    with pytest.raises(fes_mj.InputError, match="a ride knows the windows of best and measured alone"):
+    with pytest.raises(fes_mj.InputError, match="timing is 'by-angle'"):
         stimulated_rider(Muscles(RIDERS, "by-angle"), design)
 
 
 def test_joints_beyond_the_muscles_lengths_are_refused() -> None:
     far = fes_mj.load_design("trt").with_linkage(seat_angle=math.radians(5))
     rider = stimulated_rider(MUSCLES, fes_mj.load_design("trt"))
-    with pytest.raises(fes_mj.InputError, match="muscle lengths are known"):
+    with pytest.raises(fes_mj.InputError, match=r"^trt: the (knee|hip) bends"):
         ride_by_equation(Ride(far, rider, duration=1.0))

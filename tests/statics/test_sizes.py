@@ -92,7 +92,7 @@ def test_masses_go_back_into_the_design(d1: Build) -> None:
 def test_materials_are_those_of_the_file() -> None:
     assert {"aluminium", "steel", "stainless"} == {*materials()}
     assert material("steel").density == 7850.0
-    with pytest.raises(InputError, match="material is 'wood'; it must be one of aluminium, steel, stainless"):
+    with pytest.raises(InputError, match=r"material is 'wood'.* aluminium, steel, stainless"):
         material("wood")
 
 
