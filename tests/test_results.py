@@ -23,8 +23,8 @@ NUMBER = re.compile(r"[+-]?\d[\d,]*(?:\.\d+)?(?:e[+-]?\d+)?")
 @pytest.mark.long
 def test_everything_about_the_paper_is_written_again(tmp_path: Path) -> None:
     assert run(["reproduce", "-q", "--out", str(tmp_path)]) == 0
-    written = {path.relative_to(tmp_path) for path in tmp_path.rglob("*") if path.is_file()}
-    committed = {path.relative_to(RESULTS) for path in (RESULTS / "figures").iterdir()}
+    written = {path.relative_to(tmp_path) for path in tmp_path.rglob("[!.]*") if path.is_file()}
+    committed = {path.relative_to(RESULTS) for path in (RESULTS / "figures").glob("[!.]*")}
     assert committed <= written
     for name in written - committed:
         assert (RESULTS / name).exists(), f"results/{name} is not committed"

@@ -12,7 +12,7 @@ from fes_mj.cli.options import DesignName, Flag, LoadOptions, Out, PrintOptions
 from fes_mj.cli.tables import heading
 from fes_mj.common.console import conclude, print_table, say
 from fes_mj.common.errors import InputError, require_extra
-from fes_mj.common.writing import require_folder, require_replaceable, write_results
+from fes_mj.common.writing import require_results, write_results
 from fes_mj.linkage.clearance import NEAR
 from fes_mj.linkage.plates import hole_places
 from fes_mj.statics.turn import QuasiStatic, quasi_static
@@ -53,18 +53,17 @@ def draw(
     if step:
         require_extra("step", "OCP")
     loaded, moments, cadence = load.load(design)
-    require_folder(out if out.exists() else out.parent, "the drawings")
     from fes_mj.drawing import folder
     from fes_mj.statics import making
     from fes_mj.statics.sizes import FORCE_POINTS, build
 
     if rounded:
         loaded = making.rounded(loaded)
-    paths = {out / name: name for name in folder.names(hole_places(loaded), step)}
-    require_replaceable((path for path in paths if path.parent.exists()), "the drawings", load.inputs(design))
+    names = folder.names(hole_places(loaded), step)
+    paths = require_results(out, names, load.inputs(design))
     made = build(quasi_static(loaded, moments, cadence, FORCE_POINTS), material, safety)
     files = folder.contents(made, step)
-    write_results({path: files[name] for path, name in paths.items()})
+    write_results({path: files[name] for path, name in zip(paths, names, strict=True)})
     options.show(lambda: _content(made) | {"files": [str(path) for path in paths]}, lambda: _print(made), folder=out)
     return 1 if made.stack.side.hindrances else 0
 

@@ -8,7 +8,6 @@ from cyclopts import Parameter
 from fes_mj.cli.options import Flag, Out
 from fes_mj.common.console import say
 from fes_mj.common.errors import require_extra
-from fes_mj.common.writing import make_folder
 
 
 def reproduce(
@@ -25,10 +24,8 @@ def reproduce(
         quiet: Print nothing but errors.
     """
     require_extra("paper", "matplotlib", "SALib")
-    make_folder(out, "the results")
     from fes_mj.paper import reproduce as paper
 
-    paper.require_ours(out)
     for path in paper.reproduce(out, svg, quiet):
         if not quiet:
             say(str(path))

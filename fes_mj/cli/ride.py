@@ -101,15 +101,19 @@ def ride(
     """
     loaded, inputs = options.load(design, drive), drive.inputs(options, design)
     require_writable(render, "the video", ".mp4", inputs)
+    if render:
+        from fes_mj.viewing.render import require_video
+
+        require_video()
     if out and starts:
         require_extra("video", "matplotlib")
     suffixes = ("json", "csv", "xml", *(["svg"] if starts else []))
     stem = f"{loaded.design.name}-{loaded.drive.name.replace(' ', '-')}-ride"
-    paths = require_results(out, stem, suffixes, inputs) if out else {}
+    paths = require_results(out, [f"{stem}.{suffix}" for suffix in suffixes], inputs) if out else []
     case, result = fes_mj.RideCase(loaded), fes_mj.starts(loaded) if starts else None
     content = case.summary() | (result.summary() if result else {})
     if paths:
-        write_results(dict(zip(paths.values(), _texts(case, result, json_text(content)), strict=True)))
+        write_results(dict(zip(paths, _texts(case, result, json_text(content)), strict=True)))
     options.show(lambda: content, lambda: _print(case, result, options.verbose))
     if render:
         from fes_mj.viewing.render import render_video

@@ -59,6 +59,10 @@ def simulate(
     """
     loaded, inputs = drive.load(options, design), drive.inputs(options, design)
     require_writable(render, "the video", ".mp4", inputs)
+    if render:
+        from fes_mj.viewing.render import require_video
+
+        require_video()
     if speed is not None:
         _check_speed(speed, loaded.cadence)
     from fes_mj.common.provenance import provenance
@@ -67,7 +71,7 @@ def simulate(
     one_leg = checked_case(design, options, drive, timestep=timestep, turns=turns, bearings=bearings.load())
     case = one_leg if options.legs == 1 else one_leg.two_legs
     stem = f"{case.design.name} {case.drive.name}".replace(" ", "-")
-    paths = require_results(out, stem, ("json", "csv", "xml"), inputs) if out else {}
+    paths = require_results(out, [f"{stem}.{kind}" for kind in ("json", "csv", "xml")], inputs) if out else []
     # bearings lose energy, which every other check takes for an error
     checks = case.checks if case.bearings else [*verify(one_leg, quick_groups(options.legs))]
     agrees = all(check.ok for check in checks)
@@ -78,7 +82,7 @@ def simulate(
         else {}
     )
     if paths:
-        write_results(dict(zip(paths.values(), (json_text(content), *_texts(case)), strict=True)))
+        write_results(dict(zip(paths, (json_text(content), *_texts(case)), strict=True)))
     options.show(lambda: content, lambda: _print(case, answer, checks, options.verbose))
     if render:
         from fes_mj.viewing.render import render_video

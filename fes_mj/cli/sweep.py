@@ -12,7 +12,7 @@ from fes_mj.cli.options import Cadence, Jobs, Legs, Out, PrintOptions, warn_of
 from fes_mj.common.console import print_table, progress_bar, say
 from fes_mj.common.errors import InputError, require_extra
 from fes_mj.common.parallel import Workers
-from fes_mj.common.writing import make_folder, require_writable
+from fes_mj.common.writing import made_folder, require_writable
 from fes_mj.sweep.study import MuscleOptions, Study, label, load_study
 
 if TYPE_CHECKING:
@@ -49,6 +49,7 @@ def sweep(
     """
     from fes_mj.sweep.sweep import Sweep
 
+    require_extra("optimize", "pyarrow")
     workers = Workers(jobs if jobs is not None else os.cpu_count() or 1, cluster)
     if cluster is not None:
         _require_address(cluster)
@@ -58,11 +59,11 @@ def sweep(
         warn_of(moments)
     if plot:
         _require_plottable(sweep.study, study)
-    make_folder(out, "the results")
     inputs = [*sweep.study.files, *([drive.muscles] if drive.muscles else [])]
-    require_writable(csv, "the rows", ".csv", inputs)
-    require_writable(plot, "the plot", ".png", inputs)
-    summary = _run(sweep, workers, study.stem, options.silent)
+    with made_folder(out, "the results"):
+        require_writable(csv, "the rows", ".csv", inputs)
+        require_writable(plot, "the plot", ".png", inputs)
+        summary = _run(sweep, workers, study.stem, options.silent)
     if csv:
         sweep.write_csv(csv)
     if plot:

@@ -45,6 +45,20 @@ def make_folder(folder: Path, what: str) -> None:
         raise InputError(f"{folder}: cannot be made: {getattr(error, 'strerror', error)}") from None
 
 
+@contextmanager
+def made_folder(folder: Path, what: str) -> Iterator[None]:
+    """As make_folder; one that was made goes again if what follows is refused or fails and left nothing in it."""
+    made = not folder.exists()
+    make_folder(folder, what)
+    try:
+        yield
+    except BaseException:
+        with suppress(OSError):  # there is something in it
+            if made:
+                folder.rmdir()
+        raise
+
+
 def require_writable(
     path: Path | None, what: str, suffixes: str | tuple[str, ...] = "", inputs: Iterable[Path] = ()
 ) -> None:
@@ -93,27 +107,20 @@ def require_replaceable(paths: Iterable[Path], what: str, inputs: Collection[Pat
                 )
 
 
-def require_results(folder: Path, stem: str, suffixes: Iterable[str], inputs: Collection[Path] = ()) -> dict[str, Path]:
-    """Where a set of files goes in a folder that is made if its parent exists, by suffix; refused as by the others."""
+def require_results(folder: Path, names: Iterable[str | Path], inputs: Collection[Path] = ()) -> list[Path]:
+    """Where a set of files goes in a folder that is made if its parent exists; refused as by the others."""
     require_folder(folder if folder.exists() else folder.parent, "the results")
-    paths = {suffix: folder / f"{stem}.{suffix}" for suffix in suffixes}
-    if folder.exists():
-        require_replaceable(paths.values(), "the results", inputs)
+    paths = [folder / name for name in names]
+    require_replaceable((path for path in paths if path.parent.exists()), "the results", inputs)
     return paths
 
 
 def write_results(contents: Mapping[Path, str | bytes]) -> None:
     """Write the set into its folder, and folders in it; those that were made for it do not stay without it."""
-    folders = sorted({path.parent for path in contents})
-    made = [folder for folder in folders if not folder.exists()]
-    try:
-        for folder in folders:
-            make_folder(folder, "the results")
+    with ExitStack() as stack:
+        for folder in sorted({path.parent for path in contents}):
+            stack.enter_context(made_folder(folder, "the results"))
         write_files(contents, unnamed=contents.keys())
-    except BaseException:
-        for folder in (folder for folder in made[::-1] if folder.exists()):
-            folder.rmdir()
-        raise
 
 
 def _digest(content: bytes) -> str:

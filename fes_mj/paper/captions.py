@@ -46,6 +46,11 @@ def figure_section(name: str) -> str:
     return f"## {caption['title']}\n\n![{caption['title']}](figures/{name}.png)\n\n{caption['note']}\n"
 
 
+def page_names() -> list[str]:
+    """Of the pages of results, the names of their files."""
+    return [*_captions().section("page").content]
+
+
 def page_title(name: str) -> str:
     """Of a page of results, by its file's name."""
     return str(_captions().section("page").content[name])

@@ -9,14 +9,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fes_mj.common.console import track
-from fes_mj.common.errors import InputError
 from fes_mj.common.markdown import Table
 from fes_mj.common.provenance import provenance
-from fes_mj.common.reading import DATA, read_json
+from fes_mj.common.reading import DATA
 from fes_mj.common.style import STYLE
-from fes_mj.common.writing import json_text, write_files
+from fes_mj.common.writing import json_text, require_results, write_results
 from fes_mj.paper import error_budget, gains, identification, metrics, recovery, riding, tables
-from fes_mj.paper.captions import figure_section, page_title
+from fes_mj.paper.captions import figure_section, page_names, page_title
 from fes_mj.paper.runs import Runs, run_all
 from fes_mj.paper.work_shares import share_table
 
@@ -28,13 +27,16 @@ RECORD = "reproduction.json"
 
 
 def reproduce(folder: Path, svg: bool = False, silent: bool = False) -> list[Path]:
-    """Write pages, figures and reproduction.json into an existing folder.
+    """Write pages, figures and reproduction.json into a folder, which is made if its parent exists.
 
     svg: figures as SVG beside the PNG. silent: no progress is shown. All files appear or none; the same results are the
-    same bytes. Returns the files written.
+    same bytes. Returns the files written. Raises InputError for a folder that cannot be written to, or in which one of
+    these names is somebody else's file.
     """
     from fes_mj.paper.figures import FIGURES
 
+    drawn = [f"figures/{name}.{kind}" for name in FIGURES for kind in ("png", *(["svg"] if svg else []))]
+    require_results(folder, [*(f"{name}.md" for name in page_names()), *drawn, RECORD])
     runs = run_all(silent)
     pages = _pages(runs)
     contents: dict[Path, str | bytes] = {
@@ -51,8 +53,7 @@ def reproduce(folder: Path, svg: bool = False, silent: bool = False) -> list[Pat
         **{name: {table.title: table.records() for table in tables} for name, tables in pages.items()},
     }
     contents[folder / RECORD] = json_text(record)
-    (folder / "figures").mkdir(exist_ok=True)
-    write_files(contents)
+    write_results(contents)
     return [*contents]
 
 
@@ -81,14 +82,6 @@ def _pages(runs: Runs) -> dict[str, list[Table]]:
         "gains": [*(table(runs) for table in of_gains), gains.stationarity_table()],
         "error_budget": [error_budget.prior_table(), *(table(runs.budgets) for table in budget)],
     }
-
-
-def require_ours(folder: Path) -> None:
-    """Raise InputError unless a folder holds an earlier reproduction, which is replaced, or no file at all."""
-    record = folder / RECORD
-    earlier = read_json(record, "record of the results").get("provenance") if record.exists() else None
-    if not (isinstance(earlier, dict) and "fes_mj" in earlier) and any(path.is_file() for path in folder.rglob("*")):
-        raise InputError(f"{folder}: this folder is not empty and holds no {RECORD} of fes_mj; name a new one")
 
 
 def inputs() -> list[Path]:

@@ -1,6 +1,7 @@
 """Options that several commands share."""
 
 import json
+import sys
 from pathlib import Path
 
 import pytest
@@ -85,3 +86,28 @@ def test_no_output_replaces_a_file_that_is_named(
         assert f"it would replace {name}, which this command reads" in err
         assert Path(name).read_bytes() == before
         Path(out).unlink()
+
+
+@pytest.mark.parametrize(
+    ("package", "command"),
+    [
+        ("pyarrow", ["sweep", "study.toml", "-o", "out"]),
+        ("mediapy", ["simulate", "d1", "-o", "out", "--render", "out.mp4"]),
+        ("mediapy", ["ride", "d1", "-o", "out", "--render", "out.mp4"]),
+    ],
+    ids=str,
+)
+def test_a_missing_part_is_said_before_anything_is_written(
+    package: str,
+    command: list[str],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setitem(sys.modules, package, None)
+    Path("study.toml").write_text('[grid]\ndesign = ["d1"]\n')
+    code, out, err = result(capsys, *command)
+    assert (code, out) == (3, "")
+    assert "pip install" in err
+    assert [*Path().iterdir()] == [Path("study.toml")]

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from fes_mj.cli.app import run
+from fes_mj.common.writing import require_replaceable
 
 
 def test_a_folder_that_cannot_be_made(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
@@ -25,21 +26,20 @@ def test_without_matplotlib_the_extra_is_named(
     assert not list(tmp_path.iterdir())
 
 
-def test_only_an_earlier_reproduction_is_replaced(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    from fes_mj.paper.reproduce import require_ours
+def test_only_what_it_wrote_itself_is_replaced(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "reproduction.json").write_text('{"provenance": {"fes_mj": "0.1.0"}}')
+    (stranger := tmp_path / "gains.md").write_text("# mine")
+    for name in ("gains.md", "reproduction.json"):
+        assert run(["reproduce", "--out", str(tmp_path)]) == 2
+        assert f"{name}: cannot write the results: a file has this name that fes_mj did not write" in (
+            capsys.readouterr().err
+        )
+        stranger.unlink(missing_ok=True)
 
+
+def test_the_results_here_are_as_it_wrote_them() -> None:
+    """Or `make reproduce` would refuse to replace them."""
     results = Path(__file__).parents[2] / "results"
-    require_ours(results)
-    (tmp_path / "figures").mkdir()
-    require_ours(tmp_path)
-    (stranger := tmp_path / "figures" / "power.png").touch()
-    assert run(["reproduce", "--out", str(tmp_path)]) == 2
-    assert (
-        "this folder is not empty and holds no reproduction.json of fes_mj; name a new one" in capsys.readouterr().err
-    )
-    (tmp_path / "reproduction.json").write_text('{"provenance": {"theirs": 1}}')
-    assert run(["reproduce", "--out", str(tmp_path)]) == 2
-    assert "of fes_mj" in capsys.readouterr().err
-    stranger.rename(tmp_path / "reproduction.json")
-    assert run(["reproduce", "--out", str(tmp_path)]) == 2
-    assert "reproduction.json: the record of the results is not valid JSON" in capsys.readouterr().err
+    written = [*results.glob("figures/*.png"), results / "reproduction.json"]
+    written += [path for path in results.glob("*.md") if "Written by `fes_mj reproduce`" in path.read_text()]
+    require_replaceable(written, "the results")

@@ -152,7 +152,7 @@ def test_what_cannot_be_written_is_said_before_anything_runs(
     Path("study.toml").write_text(f'[grid]\ndesign = ["d1"]\n{grid}\n')
     assert run(["sweep", "study.toml", "-o", "out", option]) == 2
     assert said in capsys.readouterr().err.replace("\n", " ")
-    assert not [*tmp_path.glob("out/*")]
+    assert not Path("out").exists()
 
 
 MANY_CHUNKS = """

@@ -162,20 +162,20 @@ def test_a_file_that_nobody_named_is_replaced_only_as_it_was_written(measured: P
 
 def test_a_set_of_results_makes_its_folder(tmp_path: Path) -> None:
     folder = tmp_path / "made"
-    paths = require_results(folder, "a", ("json", "csv"))
+    paths = require_results(folder, ("a.json", "b/a.csv"))
     assert not folder.exists()
-    write_results(dict.fromkeys(paths.values(), "new"))
-    assert {path.name for path in folder.iterdir()} == {"a.json", "a.csv", RECORD}
-    assert require_results(folder, "a", ("json", "csv")) == paths
+    write_results(dict.fromkeys(paths, "new"))
+    assert {path.name for path in folder.iterdir()} == {"a.json", "b", RECORD}
+    assert require_results(folder, ("a.json", "b/a.csv")) == paths
     with pytest.raises(InputError, match="does not exist"):
-        require_results(tmp_path / "no" / "made", "a", ("json",))
+        require_results(tmp_path / "no" / "made", ("a.json",))
     with pytest.raises(InputError, match="cannot be made"):
         write_results({tmp_path / "nul\0" / "a": ""})
     with pytest.raises(InputError, match="cannot be written"):
         write_results({tmp_path / "empty" / ("n" * 300): ""})
     assert not (tmp_path / "empty").exists()
     with pytest.raises(InputError, match="is not a folder"):
-        require_results(folder / "a.csv", "a", ("json",))
+        require_results(folder / "a.json", ("a.json",))
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no locks there")
