@@ -1,5 +1,6 @@
 """The tutorials do what they say: their files and commands, page by page, and what is shown of the output."""
 
+import ast
 import json
 import re
 import shlex
@@ -72,13 +73,27 @@ def test_the_file_that_is_shown_is_the_file_that_is_used() -> None:
 
 def test_every_room_is_in_the_structure() -> None:
     """The reference, the picture and the import contract name the folders that are there."""
-    from tools.picture_structure import PICTURE, drawing, floors
+    from tools.picture_structure import HANDED_UP, PICTURE, drawing, floors
 
     rooms = {path.parent.name for path in (ROOT / "fes_mj").glob("*/__init__.py")}
-    assert {room for floor in floors() for room in floor} == rooms
-    documented = re.findall(r"^   fes_mj\.(\w+)$", (DOCS / "structure.md").read_text(), re.MULTILINE)
+    assert {room for floor in floors() for room in floor} == {*HANDED_UP} == rooms
+    page = (DOCS / "structure.md").read_text()
+    assert re.findall(r"^\| (\w+) \| \[", page, re.MULTILINE) == [room for floor in floors() for room in floor]
+    documented = re.findall(r"^   fes_mj\.(\w+)$", page, re.MULTILINE)
     assert sorted(documented) == sorted(rooms - {"cli"})
     assert drawing() == PICTURE.read_text(encoding="utf-8"), "run `python -m tools.picture_structure`"
+
+
+def test_what_a_room_hands_up_others_use() -> None:
+    from tools.picture_structure import HANDED_UP
+
+    asked: set[tuple[str, str]] = set()
+    for path in (ROOT / "fes_mj").rglob("*.py*"):
+        lines = [*ast.walk(ast.parse(path.read_text()))] if path.suffix in (".py", ".pyi") else []
+        for line in lines:
+            if isinstance(line, ast.ImportFrom) and (room := str(line.module).split(".")[1:2]) != [path.parent.name]:
+                asked |= {(*room, name.name) for name in line.names}
+    assert {(room, name) for room, names in HANDED_UP.items() for name in names} <= asked
 
 
 def test_the_keys_of_the_windows_are_those_of_the_file(tmp_path: Path) -> None:

@@ -1,6 +1,7 @@
 """Draw the rooms of the package as floors, from the import contract: python -m tools.picture_structure"""
 
 import ast
+import textwrap
 import tomllib
 from html import escape
 from pathlib import Path
@@ -10,18 +11,29 @@ from fes_mj.common.writing import replacing
 
 ROOT = Path(__file__).parents[1]
 PICTURE = ROOT / "docs" / "images" / "structure.svg"
-WIDTH, FLOOR, BOX, GAP = 860, 62, 42, 12  # px
-# What a floor hands up to those above it.
+WIDTH, GAP, INSET, LINE = 860, 8, 10, 15  # px
+CHARACTER = 7.2  # px, on average, of the widest of the usual fonts
+# What a room is asked for by others: names that it defines.
 HANDED_UP = {
-    "linkage": "Design, Motion, masses",
-    "moments": "JointMoments, TorqueMap",
-    "muscles": "Riders, MuscleTurn",
-    "statics": "QuasiStatic, Cycles",
-    "riding": "Ride, Fit, error budget",
-    "simulation": "MjSpec, Simulation",
-    "crosscheck": "Case, RideCase, sweeps",
-    "viewing": "video, figures, pages",
-    "verification": "verdicts, found designs",
+    "cli": ("main",),
+    "paper": ("reproduce", "table1"),
+    "explore": ("serve", "Answers"),
+    "verification": ("verify", "inject"),
+    "validation": ("rows", "Experiment"),
+    "optimization": ("Findings", "Winner"),
+    "viewing": ("render_video", "write_figure", "page"),
+    "drawing": ("folder",),
+    "sweep": ("Sweep", "load_study"),
+    "crosscheck": ("Case", "RideCase"),
+    "simulation": ("build_mjcf", "mjcf_text", "Simulation"),
+    "budget": ("answer", "error_budget"),
+    "riding": ("Ride", "Trace", "Starts"),
+    "fit": ("fit_seat", "fit_population"),
+    "statics": ("QuasiStatic", "MuscleStatic", "Cycles", "WorkTable"),
+    "muscles": ("Muscles", "Riders", "Windows"),
+    "moments": ("JointMoments", "TorqueMap"),
+    "linkage": ("Design", "Motion", "turning"),
+    "common": ("FloatArray", "InputError", "read_toml", "Check"),
 }
 
 
@@ -39,31 +51,29 @@ def purpose(room: str) -> str:
 
 def drawing() -> str:
     """The picture as SVG."""
-    rows = floors()
-    lines = [
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {FLOOR * len(rows) + GAP}" '
+    top, lines = GAP, []
+    for rooms in floors():
+        width = (WIDTH - GAP) / len(rooms) - GAP
+        captions = [textwrap.wrap(purpose(room), int((width - 2 * INSET) / CHARACTER)) for room in rooms]
+        height = LINE * (1 + max(map(len, captions))) + INSET
+        for column, (room, caption) in enumerate(zip(rooms, captions, strict=True)):
+            left = GAP + column * (width + GAP)
+            lines += [
+                f'<rect x="{left:.0f}" y="{top}" width="{width:.0f}" height="{height}" rx="4"/>',
+                f'<text x="{left + INSET:.0f}" y="{top + LINE}" font-weight="bold">{room}</text>',
+                f'<text x="{left + width - INSET:.0f}" y="{top + LINE}" font-size="11" text-anchor="end">'
+                f"\N{UPWARDS ARROW} {', '.join(HANDED_UP[room])}</text>",
+            ] + [
+                f'<text x="{left + INSET:.0f}" y="{top + LINE * (2 + row)}">{escape(words)}</text>'
+                for row, words in enumerate(caption)
+            ]
+        top += height + GAP
+    head = (
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {top}" '
         f'font-family="sans-serif" font-size="12" fill="{INK}">'
         f"<style>rect {{ fill: none; stroke: {INK} }}</style>"
-    ]
-    for number, rooms in enumerate(rows):
-        top, width = GAP + FLOOR * number, (WIDTH - GAP) / len(rooms) - GAP
-        for column, room in enumerate(rooms):
-            left = GAP + column * (width + GAP)
-            most = int(width / 6.8)
-            words = purpose(room)
-            words = words if len(words) <= most else words[: most - 1].rsplit(" ", 1)[0].rstrip(",") + " …"
-            lines += [
-                f'<rect x="{left:.0f}" y="{top}" width="{width:.0f}" height="{BOX}" rx="4"/>',
-                f'<text x="{left + 10:.0f}" y="{top + 17}" font-weight="bold">{room}</text>',
-                f'<text x="{left + 10:.0f}" y="{top + 34}">{escape(words)}</text>',
-            ]
-        for room in rooms:
-            if room in HANDED_UP:
-                lines.append(
-                    f'<text x="{WIDTH / 2:.0f}" y="{top - 6}" font-size="11" text-anchor="middle">'
-                    f"\N{UPWARDS ARROW} {HANDED_UP[room]}</text>"
-                )
-    return "\n".join([*lines, "</svg>", ""])
+    )
+    return "\n".join([head, *lines, "</svg>", ""])
 
 
 def main() -> None:
