@@ -8,19 +8,20 @@ import numpy as np
 from cyclopts import Parameter
 from cyclopts.validators import Number
 
-from fes_mj.cli.options import DesignName, Flag, LoadOptions, Out, PrintOptions
+from fes_mj.cli.options import Cadence, DesignName, Dims, Flag, MomentsOptions, Out, PrintOptions, speed_at
 from fes_mj.cli.tables import heading
 from fes_mj.common.console import conclude, print_table, say
 from fes_mj.common.errors import InputError, require_extra
 from fes_mj.common.writing import require_results, write_results
 from fes_mj.linkage.clearance import NEAR
+from fes_mj.linkage.design_file import load_design
 from fes_mj.linkage.plates import hole_places
 from fes_mj.statics.turn import QuasiStatic, quasi_static
 
 if TYPE_CHECKING:
     from fes_mj.statics.sizes import Build
 
-_LOAD, _PRINT = LoadOptions(), PrintOptions()
+_WHOSE, _PRINT = MomentsOptions(), PrintOptions()
 
 
 def draw(
@@ -32,7 +33,9 @@ def draw(
     safety: Annotated[float, Parameter(validator=Number(gte=1, lte=20))] = 2.0,
     step: Flag = False,
     rounded: Flag = False,
-    load: LoadOptions = _LOAD,
+    cadence: Cadence | None = None,
+    dims: Dims = "identified",
+    whose: MomentsOptions = _WHOSE,
     options: PrintOptions = _PRINT,
 ) -> int:
     """Size links and pins of a design, lay them out in layers, and write what a workshop needs.
@@ -48,11 +51,12 @@ def draw(
         safety: Factor against yielding and buckling.
         step: Also links/LINK.step, solid bodies; needs the extra `step`.
         rounded: Draw the design with its lengths rounded to 0.5 mm.
+        cadence: Crank speed in rpm; by default the one at which the tricycle does 5.71 km/h.
     """
     require_extra("build", "shapely", "ezdxf", "matplotlib")
     if step:
         require_extra("step", "OCP")
-    loaded, moments, cadence = load.load(design)
+    loaded, moments = load_design(design, dims), whose.load_moments()
     from fes_mj.drawing import folder
     from fes_mj.statics import making
     from fes_mj.statics.sizes import FORCE_POINTS, build
@@ -60,8 +64,8 @@ def draw(
     if rounded:
         loaded = making.rounded(loaded)
     names = folder.names(hole_places(loaded), step)
-    paths = require_results(out, names, load.inputs(design))
-    made = build(quasi_static(loaded, moments, cadence, FORCE_POINTS), material, safety)
+    paths = require_results(out, names, whose.inputs(design))
+    made = build(quasi_static(loaded, moments, speed_at(cadence, loaded), FORCE_POINTS), material, safety)
     files = folder.contents(made, step)
     write_results({path: files[name] for path, name in zip(paths, names, strict=True)})
     options.show(lambda: _content(made) | {"files": [str(path) for path in paths]}, lambda: _print(made), folder=out)

@@ -17,6 +17,7 @@ from fes_mj.riding.stimulation import CORE, Window, stimulation as find_windows,
 
 def by_moments(
     design: Design,
+    legs: int,
     cadence: list[float] | None,
     whose: MomentsOptions,
     drive: MusclesFirst,
@@ -38,7 +39,7 @@ def by_moments(
             f"{said[0]}: where moments drive the crank depends on the linkage alone; leave it out, or use --drive "
             "muscles"
         )
-    windows = find_windows(design)
+    windows = find_windows(design, legs)
     if pages:
         from fes_mj.viewing.charts import write_figure
         from fes_mj.viewing.rings import windows_figure
@@ -65,6 +66,7 @@ def _print(design: Design, windows: list[Window]) -> None:
         )
     columns = ("muscle", "drives the crank (width)", "from top dead centre", "core of it (width)")
     print_table(f"{design.name}, right leg; crank angles in deg", columns, rows)
-    say(f"0: {CRANK_ZERO}; the left leg's are 180 deg later.")
+    left = "; the left leg's are 180 deg later" if any(window.leg == "left" for window in windows) else ""
+    say(f"0: {CRANK_ZERO}{left}.")
     say(f"Core: the joint moves at least {CORE:g} times as fast per crank angle as at best in the window.")
     say("A stimulated muscle answers late and weakens with speed: --drive muscles says when to stimulate.")

@@ -1,14 +1,14 @@
 """`fes_mj stimulation`: settings of a stimulator for a design and seat, or where moments drive its crank."""
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 from cyclopts import Parameter
 
 from fes_mj.cli.drive import MusclesFirst
 from fes_mj.cli.effectiveness import by_moments
-from fes_mj.cli.options import Cadence, DesignName, Dims, MomentsOptions, PrintOptions, bounds, speed_at
+from fes_mj.cli.options import Cadence, DesignName, Dims, Legs, MomentsOptions, PrintOptions, bounds, speed_at
 from fes_mj.cli.tables import span, with_error
 from fes_mj.common.console import print_table, say
 from fes_mj.common.errors import InputError, require_extra
@@ -17,7 +17,7 @@ from fes_mj.common.writing import PAGES, require_writable, write_text
 from fes_mj.linkage.design_file import load_design
 from fes_mj.linkage.turning import CRANK_ZERO
 from fes_mj.muscles.rules import BEST
-from fes_mj.muscles.setting import MISTIMED
+from fes_mj.muscles.setting import MISTIMED, Setting
 from fes_mj.muscles.settings import Settings
 
 _SLOWEST, _STEP, _APART = 30, 10, 5  # rpm: of the cadences below the main one, by which a start passes
@@ -28,6 +28,7 @@ def stimulation(
     /,
     *,
     cadence: Annotated[list[Cadence] | None, Parameter(negative="", validator=bounds("cadence_rpm"))] = None,
+    legs: Legs = 2,
     dims: Dims = "identified",
     whose: MomentsOptions = MomentsOptions(),
     drive: MusclesFirst = MusclesFirst(),
@@ -40,6 +41,7 @@ def stimulation(
     Args:
         cadence: Crank speed in rpm, by default the one at which the tricycle does 5.71 km/h, and slower ones that a
             start passes; or several times these alone, the first in full.
+        legs: Both, half a turn apart, or the right one alone: whose windows are given, and what they do together.
         csv: Write the windows by cadence as a table (.csv).
         out: Draw the page (.svg, .pdf or .png); may be given several times.
     """
@@ -50,7 +52,7 @@ def stimulation(
         require_writable(page, "the page", PAGES, inputs)
         require_extra("report", "matplotlib")
     if drive.drive == "moments":
-        by_moments(loaded, cadence, whose, drive, csv, pages, options)
+        by_moments(loaded, legs, cadence, whose, drive, csv, pages, options)
         return
     if drive.timing != BEST:
         raise InputError(
@@ -59,7 +61,8 @@ def stimulation(
         )
     speeds = [speed_at(rpm, loaded) for rpm in cadence or (None,)]
     slower = np.arange(_SLOWEST, speeds[0] / RPM - _APART, _STEP) * RPM if len(speeds) == 1 else ()
-    settings = Settings.solve(loaded, drive.load_riders(whose), [*speeds, *map(float, slower)], speeds[0], drive.duty)
+    riders, cadences = drive.load_riders(whose), [*speeds, *map(float, slower)]
+    settings = Settings.solve(loaded, riders, cadences, speeds[0], drive.duty, legs)
     if pages:
         from fes_mj.viewing.charts import write_figure
         from fes_mj.viewing.settings_page import settings_figure
@@ -88,10 +91,12 @@ def _print(settings: Settings) -> None:
     )  # fmt: skip
     title = f"{main.design.name} at {content['cadence_rpm']:.1f} rpm, right leg; {main.riders.name} muscles"
     print_table(title, columns, rows)
-    print_table("What it gives", ("", "both legs"), _totals(content))
+    whole = "both legs" if main.legs == 2 else "one leg"
+    print_table("What it gives", ("", whole), _totals(main))
     if len(settings.by_cadence) > 1:
-        print_table("By cadence, right leg", ("rpm", *(row[0] for row in rows), "both legs, W"), _by_cadence(settings))
-    say(f"0: {CRANK_ZERO}; the left leg's windows are 180 deg later. Delay and rise of the muscles are counted in.")
+        print_table("By cadence, right leg", ("rpm", *(row[0] for row in rows), f"{whole}, W"), _by_cadence(settings))
+    left = "; the left leg's windows are 180 deg later" if main.legs == 2 else ""
+    say(f"0: {CRANK_ZERO}{left}. Delay and rise of the muscles are counted in.")
     for note in content["notes"]:
         say(f"note: {note}")
     say(
@@ -100,16 +105,17 @@ def _print(settings: Settings) -> None:
     )
 
 
-def _totals(content: dict[str, Any]) -> list[tuple[str, str]]:
+def _totals(main: Setting) -> list[tuple[str, str]]:
+    content, over_turn = main.summary(), main.together.mean(axis=0)
     return [
-        ("power, W", with_error(content["power_two_legs_W"], 2 * content["power_sd_W"])),
-        ("after half an hour of it, W", span(content["power_two_legs_30_min_W"])),
-        ("least power over the turn, W", f"{content['power_two_legs_min_W']:.1f}"),
+        ("power, W", with_error(float(over_turn.mean()), main.legs * content["power_sd_W"])),
+        ("after half an hour of it, W", span(main.tired)),
+        ("least power over the turn, W", f"{over_turn.min():.1f}"),
         ("below zero, % of the turn", f"{100 * content['negative_share']:.0f}"),
         ("power of a leg per stimulation, W", f"{content['power_per_effort_W']:.2f}"),
         (f"{MISTIMED:g} deg early costs, %", f"{100 * content['early_loss_share']:.0f}"),
         (f"{MISTIMED:g} deg late costs, %", f"{100 * content['late_loss_share']:.0f}"),
-        ("widest window allowed, deg", f"{360 * content['duty_limit']:.0f}"),
+        ("widest window allowed, deg", f"{360 * main.duty:.0f}"),
     ]
 
 
@@ -118,8 +124,8 @@ def _by_cadence(settings: Settings) -> list[tuple[str, ...]]:
     for setting in settings.by_cadence:
         spans = [_span(record, "deg") for record in setting.records() if record["leg"] == "right"]
         power = setting.power.sum(axis=0)
-        both = with_error(2 * float(power.mean()), 2 * float(power.std()))
-        rows.append((f"{setting.cadence / RPM:.1f}", *spans, both))
+        together = with_error(setting.legs * float(power.mean()), setting.legs * float(power.std()))
+        rows.append((f"{setting.cadence / RPM:.1f}", *spans, together))
     return rows
 
 

@@ -12,7 +12,7 @@ from fes_mj.common.arrays import FloatArray
 from fes_mj.common.errors import InputError
 from fes_mj.common.units import RPM, turns_per_second
 from fes_mj.linkage.design import Design
-from fes_mj.linkage.legs import TWO_LEGS
+from fes_mj.linkage.legs import TWO_LEGS, all_legs
 from fes_mj.linkage.turning import turning
 from fes_mj.muscles.anatomy import GROUPS, anatomy
 from fes_mj.muscles.fatigue import HALF_AN_HOUR, power_over_time, recoveries
@@ -26,17 +26,21 @@ MISTIMED = 20.0  # deg, by which windows are shifted to see what that costs
 
 @dataclass(frozen=True, eq=False)
 class Setting:
-    """The best windows of a design at one cadence (rad/s); duty: the limit that the user keeps."""
+    """The best windows of a design at one cadence (rad/s); duty: the limit that the user keeps.
+
+    legs: that are stimulated, both half a turn apart or the right one alone.
+    """
 
     design: Design
     cadence: float
     duty: float
     stimulated: Stimulated
+    legs: int = 2
 
     @classmethod
-    def best(cls, design: Design, riders: Riders, cadence: float, duty: float = DUTY) -> "Setting":
+    def best(cls, design: Design, riders: Riders, cadence: float, duty: float = DUTY, legs: int = 2) -> "Setting":
         """Raises as rules.stimulated, and InputError where no group gives power."""
-        setting = cls(design, cadence, duty, stimulated(BEST, riders, design, cadence, duty))
+        setting = cls(design, cadence, duty, stimulated(BEST, riders, design, cadence, duty), legs)
         if not setting.windows.width.any():
             raise InputError(
                 f"{design.name}: at {cadence / RPM:.4g} rpm no muscle group gives power, however it is stimulated; "
@@ -65,9 +69,9 @@ class Setting:
         return self.turn.group_power[..., 0]
 
     @cached_property
-    def both_legs(self) -> FloatArray:
-        """Expected power of both legs over the turn, W, shape (angles,)."""
-        return np.asarray(self.turn.two_legs[:, 0].mean(axis=0))
+    def together(self) -> FloatArray:
+        """Power of the legs together over the turn, W, shape (members, angles)."""
+        return all_legs(self.turn.power[:, 0], self.legs)
 
     @cached_property
     def effort(self) -> FloatArray:
@@ -90,25 +94,26 @@ class Setting:
 
     @property
     def tired(self) -> list[float]:
-        """Expected power of both legs after half an hour at this cadence, W: by the slower recovery, by the faster."""
+        """Expected power of the legs after half an hour at this cadence, W: by the slower recovery, by the faster."""
         after = [power_over_time(self.turn, np.array([HALF_AN_HOUR]), recovery) for recovery in recoveries().values()]
-        return sorted(2 * float(power.mean()) for power in after)
+        return sorted(self.legs * float(power.mean()) for power in after)
 
     def summary(self) -> dict[str, Any]:
         """What it gives and costs, as JSON names and units it."""
-        together, both = self.power.sum(axis=0), self.both_legs
-        early, late = (float(lost.sum() / together.mean()) for lost in self.early_late)
+        leg, over_turn = self.power.sum(axis=0), self.together.mean(axis=0)
+        early, late = (float(lost.sum() / leg.mean()) for lost in self.early_late)
+        legs = "one_leg" if self.legs == 1 else "two_legs"
         return {
             "cadence_rpm": self.cadence / RPM,
             "cadence_Hz": turns_per_second(self.cadence),
-            "power_mean_W": float(together.mean()),
-            "power_sd_W": float(together.std()),
-            "power_two_legs_W": float(both.mean()),
-            "power_two_legs_30_min_W": self.tired,
-            "power_two_legs_min_W": float(both.min()),
-            "negative_share": float(np.mean(both < 0)),
+            "power_mean_W": float(leg.mean()),
+            "power_sd_W": float(leg.std()),
+            f"power_{legs}_W": float(over_turn.mean()),
+            f"power_{legs}_30_min_W": self.tired,
+            f"power_{legs}_min_W": float(over_turn.min()),
+            "negative_share": float(np.mean(over_turn < 0)),
             "stimulation_effort": float(self.effort.sum()),
-            "power_per_effort_W": float(together.mean() / self.effort.sum()),
+            "power_per_effort_W": float(leg.mean() / self.effort.sum()),
             "early_loss_share": early,
             "late_loss_share": late,
         }
@@ -119,7 +124,7 @@ class Setting:
         for number, group in enumerate(GROUPS):
             width = float(self.windows.width[number, 0, 0])
             power, effort = self.power[number], float(self.effort[number])
-            for leg in TWO_LEGS:
+            for leg in TWO_LEGS[: self.legs]:
                 on = float(self.windows.on[number, 0, 0]) + math.degrees(leg.lag)
                 ends = [on % 360, (on + width) % 360] if width else [None, None]
                 from_top = [None if end is None else (end - math.degrees(top)) % 360 for end in ends]

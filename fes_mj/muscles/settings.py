@@ -28,10 +28,10 @@ class Settings:
 
     @classmethod
     def solve(
-        cls, design: Design, riders: Riders, cadences: Sequence[float], main: float, duty: float = DUTY
+        cls, design: Design, riders: Riders, cadences: Sequence[float], main: float, duty: float = DUTY, legs: int = 2
     ) -> "Settings":
-        """cadences: rad/s, of which `main` is one. Raises as rules.stimulated."""
-        by_cadence = {cadence: Setting.best(design, riders, cadence, duty) for cadence in sorted(cadences)}
+        """cadences: rad/s, of which `main` is one. legs: as of Setting. Raises as rules.stimulated."""
+        by_cadence = {cadence: Setting.best(design, riders, cadence, duty, legs) for cadence in sorted(cadences)}
         return cls(tuple(by_cadence.values()), by_cadence[main])
 
     @property
@@ -56,6 +56,7 @@ class Settings:
             "drive": "muscles",
             "timing": BEST,
             "group": main.riders.name,
+            "legs": main.legs,
             "seat": self.seat,
             "crank_angle_zero": CRANK_ZERO,
             "top_dead_centre_deg": math.degrees(turning(main.design).top_dead_centre),

@@ -19,7 +19,7 @@ from fes_mj.common.arrays import FloatArray
 from fes_mj.linkage import kinematics
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.joints import PerJoint
-from fes_mj.linkage.legs import TWO_LEGS, Leg
+from fes_mj.linkage.legs import LEGS, TWO_LEGS, Leg
 from fes_mj.linkage.turning import turning
 
 
@@ -87,8 +87,8 @@ class Window:
         }
 
 
-def stimulation(design: Design) -> list[Window]:
-    """Windows of every muscle group, both legs; by muscle, leg, and crank angle.
+def stimulation(design: Design, legs: int = 2) -> list[Window]:
+    """Windows of every muscle group, of both legs or the right one alone; by muscle, leg, and crank angle.
 
     Windows that hold less than LEAST_SHARE of the muscle's swing are left out. Raises AssemblyError for a linkage that
     does not close.
@@ -105,7 +105,7 @@ def stimulation(design: Design) -> list[Window]:
         own = [_window(name, muscle, angle, rate, *ends) for ends in _positive(muscle.sense * rate[muscle.joint])]
         least = LEAST_SHARE * sum(window.swing for window in own)
         worth = [window for window in own if window.swing >= least]
-        windows += [window.of(leg) for leg in TWO_LEGS for window in worth]
+        windows += [window.of(leg) for leg in TWO_LEGS[: len(LEGS[legs])] for window in worth]
     return windows
 
 

@@ -11,7 +11,7 @@ from matplotlib.transforms import Bbox
 from fes_mj.common.style import BAD, FAINT, INK, SERIES, literal
 from fes_mj.common.text import printable
 from fes_mj.common.units import RPM
-from fes_mj.linkage.legs import all_legs
+from fes_mj.linkage.legs import TWO_LEGS
 from fes_mj.linkage.turning import CRANK_ZERO, turning
 from fes_mj.muscles.anatomy import GROUPS
 from fes_mj.muscles.prior import ramp
@@ -22,7 +22,7 @@ from fes_mj.viewing.rings import clockwise, mark_top_dead_centre
 
 A4 = 11.69, 8.27  # inches, landscape
 _COLUMNS = (
-    "", "right on", "off", "left on", "off", "gives, W", "effort", "W per\neffort",
+    "gives, W", "effort", "W per\neffort",
     f"{MISTIMED:g} deg\nearly, W", f"{MISTIMED:g} deg\nlate, W",
 )  # fmt: skip
 _LONGEST = 40  # letters of a name
@@ -60,11 +60,12 @@ def _for_whom(settings: Settings) -> str:
 
 def _totals(setting: Setting) -> str:
     content = setting.summary()
-    low, high = content["power_two_legs_30_min_W"]
+    low, high = setting.tired
+    both = "" if setting.legs == 1 else f"Both legs: {content['power_two_legs_W']:.1f} W, "
     lines = (
-        f"Both legs: {content['power_two_legs_W']:.1f} W, one leg {content['power_mean_W']:.1f} +- "
-        f"{content['power_sd_W']:.1f} W; both after half an hour {low:.0f} to {high:.0f} W.",
-        f"Least over the turn {content['power_two_legs_min_W']:.1f} W, below zero for "
+        f"{both}{'one' if both else 'One'} leg {content['power_mean_W']:.1f} +- {content['power_sd_W']:.1f} W; "
+        f"{'both ' if both else ''}after half an hour {low:.0f} to {high:.0f} W.",
+        f"Least over the turn {setting.together.mean(axis=0).min():.1f} W, below zero for "
         f"{100 * content['negative_share']:.0f} % of it.",
         f"Stimulation: {content['stimulation_effort']:.2f} of the measurement's; {content['power_per_effort_W']:.1f} W "
         "of a leg for as much as the measurement's.",
@@ -92,8 +93,8 @@ def _ring(axes: Any, setting: Setting) -> None:
     windows = setting.windows
     for number, (group, colour) in enumerate(zip(GROUPS, SERIES, strict=True)):
         on, width = (np.radians(values[number, 0, 0]) for values in (windows.on, windows.width))
-        for later, shade in ((0.0, 1.0), (np.pi, 0.22)):
-            middle, height = on + width / 2 + later, _INNER + _RING * number
+        for leg, shade in zip(TWO_LEGS[: setting.legs], (1.0, 0.22), strict=False):
+            middle, height = on + width / 2 + leg.lag, _INNER + _RING * number
             look = {"color": colour, "alpha": shade, "lw": 0, "label": group if shade == 1 else None}
             axes.bar(middle, 0.8 * _RING, width=width, bottom=height, **look)
     mark_top_dead_centre(axes, setting.design, _INNER + 3 * _RING)
@@ -102,10 +103,10 @@ def _ring(axes: Any, setting: Setting) -> None:
 
 
 def _table(axes: Axes, setting: Setting) -> None:
-    rows = [*setting.records()]
-    cells = []
-    for right, left in zip(rows[::2], rows[1::2], strict=True):
-        ends = (right["on_deg"], right["off_deg"], left["on_deg"], left["off_deg"])
+    rows, cells = [*setting.records()], []
+    for number, right in enumerate(rows[:: setting.legs]):
+        of_group = rows[setting.legs * number :][: setting.legs]
+        ends = [row[f"{end}_deg"] for row in of_group for end in ("on", "off")]
         per = right["power_per_effort_W"]
         cells.append(
             [
@@ -118,8 +119,10 @@ def _table(axes: Axes, setting: Setting) -> None:
             ]
         )
     axes.axis("off")
-    widths = [0.16, 0.09, 0.07, 0.09, 0.07, 0.14, 0.08, 0.09, 0.105, 0.105]
-    table = axes.table(cells, colLabels=_COLUMNS, colWidths=widths, cellLoc="center", bbox=Bbox.unit())
+    legs = [row["leg"] for row in rows[: setting.legs]]
+    columns = ["", *(name for leg in legs for name in (f"{leg} on", "off")), *_COLUMNS]
+    widths = [0.16, *([0.09, 0.07] * setting.legs), 0.14, 0.08, 0.09, 0.105, 0.105]
+    table = axes.table(cells, colLabels=columns, colWidths=widths, cellLoc="center", bbox=Bbox.unit())
     table.auto_set_font_size(False)
     table.set_fontsize(9)
     for (row, column), cell in table.get_celld().items():
@@ -134,16 +137,15 @@ def _table(axes: Axes, setting: Setting) -> None:
 
 
 def _turn(axes: Axes, setting: Setting) -> None:
-    """Power of both legs over the turn, with what 90 % of the riders give."""
-    degrees = np.append(np.degrees(ANGLES), 360)
-    together = all_legs(setting.turn.power[:, 0])
+    """Power of the legs over the turn, with what 90 % of the riders give."""
+    degrees, together = np.append(np.degrees(ANGLES), 360), setting.together
     closed = np.concatenate([together, together[:, :1]], axis=1)
     low, high = np.quantile(closed, (0.05, 0.95), axis=0)
     axes.fill_between(degrees, low, high, color=SERIES[0], alpha=0.18, lw=0)
     axes.plot(degrees, closed.mean(axis=0), color=SERIES[0])
     axes.axhline(0, color=BAD, lw=0.8)
     axes.set(xlim=(0, 360), xticks=range(0, 361, 90), xlabel="crank angle, deg", ylabel="W")
-    axes.set_title("power of both legs", size=9, loc="left")
+    axes.set_title(f"power of {_legs(setting)}", size=9, loc="left")
 
 
 def _by_cadence(axes: Axes, settings: Settings) -> None:
@@ -160,9 +162,9 @@ def _by_cadence(axes: Axes, settings: Settings) -> None:
 
 
 def _powers(axes: Axes, settings: Settings) -> None:
-    """Power of both legs by cadence, over the riders; the main cadence marked."""
+    """Power of the legs by cadence, over the riders; the main cadence marked."""
     rpm = np.array([setting.cadence / RPM for setting in settings.by_cadence])
-    powers = np.array([2 * setting.power.sum(axis=0) for setting in settings.by_cadence])
+    powers = np.array([setting.legs * setting.power.sum(axis=0) for setting in settings.by_cadence])
     low, high = np.quantile(powers, (0.05, 0.95), axis=1)
     axes.errorbar(
         rpm,
@@ -174,4 +176,8 @@ def _powers(axes: Axes, settings: Settings) -> None:
     )
     axes.axvline(settings.main.cadence / RPM, color=INK, lw=0.8, ls=(0, (4, 2)))
     axes.set(xlabel="cadence, rpm", ylabel="W", ylim=(min(0, float(low.min())), None))
-    axes.set_title("power of both legs, 5 to 95 %", size=9, loc="left")
+    axes.set_title(f"power of {_legs(settings.main)}, 5 to 95 %", size=9, loc="left")
+
+
+def _legs(setting: Setting) -> str:
+    return "one leg" if setting.legs == 1 else "both legs"

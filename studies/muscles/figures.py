@@ -108,7 +108,7 @@ def windows() -> Figure:
             label = group if place == 0 else None
             bars.broken_barh(pieces, (place - 0.36 + 0.25 * number, 0.22), color=SERIES[number], lw=0, label=label)
         if name in ("trt", "r1", "d1"):
-            power.plot(np.degrees(ANGLES), setting.both_legs, color=colour, label=name.upper())
+            power.plot(np.degrees(ANGLES), setting.together.mean(axis=0), color=colour, label=name.upper())
     bars.set_yticks(range(len(DESIGNS)), [name.upper() for name in DESIGNS])
     bars.invert_yaxis()
     for axes in (bars, power):

@@ -46,6 +46,25 @@ def test_table_json_and_files(capsys: pytest.CaptureFixture[str], tmp_path: Path
     assert f"{first['on_deg']:.0f} to {first['off_deg']:.0f}" in out
 
 
+@pytest.mark.parametrize("drive", ["muscles", "moments"])
+def test_legs_are_whose_windows_are_given(
+    drive: str, capsys: pytest.CaptureFixture[str], tmp_path: Path, few: tuple[str, str]
+) -> None:
+    page, table = tmp_path / "page.svg", tmp_path / "windows.csv"
+    own = ["stimulation", "d1", "--drive", drive, *(few if drive == "muscles" else ())]
+    both, one = (answer(capsys, *own, "--legs", legs)[1] for legs in "21")
+    assert answer(capsys, *own)[1] == both
+    assert one["windows"] == [row for row in both["windows"] if row["leg"] == "right"] != both["windows"]
+    code, out, _ = result(capsys, *own, "--legs", "1", "--csv", str(table), "-o", str(page))
+    assert (code, "left" in out + table.read_text(), "both legs" in out) == (0, False, False)
+    assert "left" not in page.read_text().lower().replace("text-align: left", "")
+    if drive == "muscles":
+        assert one["power_one_leg_W"] == pytest.approx(one["power_mean_W"])
+        assert both["power_two_legs_W"] == pytest.approx(2 * one["power_one_leg_W"])
+        assert both["power_two_legs_30_min_W"] == pytest.approx([2 * power for power in one["power_one_leg_30_min_W"]])
+        assert both["power_two_legs_min_W"] > 2 * one["power_one_leg_min_W"]
+
+
 def _within_the_page(figure: Figure) -> None:
     """Each of the page's own lines of text ends on it."""
     page = figure.bbox
