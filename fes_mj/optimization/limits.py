@@ -24,11 +24,12 @@ VARIED = (*LENGTHS, "gear_ratio")  # the ten variables x of the problem
 _ON_EDGE = 1e-12  # m: a pivot that near to the border of the design space is on it, and inside
 _BOUNDS = np.array([(COMPONENTS[name].variable.low, COMPONENTS[name].variable.high) for name in LENGTHS]).T
 _OF_FOUR_BAR = [VARIED.index(name) for name in ("R1x", "R1y", "R2", "R6")]
+_NUMBERS = ("crank_min", "rocker_min", "foot_max", "grashof_min")
 _PAIRS = ("knee_deg", "hip_deg")
 _NOT_NEGATIVE = ("gear_ratio_max", "joint_rounding_deg")
 _TABLES = {
     "design_space": ("name", "polygon"),
-    "limits": ("crank_min", "rocker_min", "foot_max", "grashof_min", *_PAIRS, *_NOT_NEGATIVE),
+    "limits": (*_NUMBERS, *_PAIRS, *_NOT_NEGATIVE),
     "search": tuple(name for name in VARIED if name not in PIVOTS),
 }
 
@@ -77,14 +78,9 @@ def load_limits(path: Path = DEFAULT, overrides: Mapping[str, float] | None = No
         section.only((*keys, *KEYS) if section.name == "limits" else keys)
         section.require(keys, f"copy it from the default problem file {DEFAULT.name}")
     space, limits, search = (content.section(name) for name in _TABLES)
-    values: dict[str, Any] = {
-        key: limits.ascending_pair(key)
-        if key in _PAIRS
-        else limits.number(key, 0.0, allowed="a number that is not negative")
-        if key in _NOT_NEGATIVE
-        else limits.number(key)
-        for key in _TABLES["limits"]
-    }
+    values: dict[str, Any] = {key: limits.number(key) for key in _NUMBERS}
+    values |= {key: limits.ascending_pair(key) for key in _PAIRS}
+    values |= {key: limits.number(key, 0.0, allowed="a number that is not negative") for key in _NOT_NEGATIVE}
     build = {key: limits.number(key, -math.inf) for key in KEYS if key in limits.content}
     polygon, bounds = _polygon(space), {key: search.ascending_pair(key) for key in _TABLES["search"]}
     bounds |= _pivot_bounds(polygon)
@@ -212,25 +208,17 @@ def build_constraints(build: BuildLimits | None) -> tuple[Constraint, ...]:
 
 def length_values(design: Design, lengths: FloatArray, polygon: ComplexArray) -> FloatArray:
     """Values of length_constraints for a batch of designs with these lengths, shape (n, 9); returns shape (n, 8)."""
-    linkage = design.linkage
+    linkage, room = design.linkage, np.minimum(lengths - _BOUNDS[0], _BOUNDS[1] - lengths)
+    pivots = (np.broadcast_to(point, (design.size, 1)).ravel() for point in (linkage.ground, linkage.crank_centre))
+    inside = [depth_inside(polygon, points) for points in pivots]
     if linkage.kind == "trt":  # what a four-bar lacks keeps every limit
-        none = np.full(design.size, np.inf)
-        inside = depth_inside(polygon, np.ravel(np.broadcast_to(linkage.ground, (design.size, 1))))
-        own = np.min(np.minimum(lengths - _BOUNDS[0], _BOUNDS[1] - lengths)[:, _OF_FOUR_BAR], axis=1)
-        return np.column_stack([np.ravel(linkage.crank), none, np.ravel(linkage.foot), own, none, none, none, inside])
-    others = np.stack([np.abs(linkage.pivot_to_crank), linkage.coupler, linkage.rocker])
-    columns = (
-        linkage.crank,
-        linkage.rocker,
-        linkage.foot,
-        np.minimum(lengths - _BOUNDS[0], _BOUNDS[1] - lengths).min(axis=1),
-        others.min(axis=0) - linkage.crank,
-        grashof_margin(design),
-    )
-    pivots = (np.asarray(linkage.ground), np.asarray(linkage.crank_centre))
-    return np.column_stack(
-        [np.ravel(column) for column in columns] + [depth_inside(polygon, pivot.ravel()) for pivot in pivots]
-    )
+        none, own = np.full(design.size, np.inf), room[:, _OF_FOUR_BAR].min(axis=1)
+        columns = [linkage.crank, none, linkage.foot, own, none, none, none, inside[1]]
+    else:
+        others = np.min([np.abs(linkage.pivot_to_crank), linkage.coupler, linkage.rocker], axis=0)
+        shortest, grashof = others - linkage.crank, grashof_margin(design)
+        columns = [linkage.crank, linkage.rocker, linkage.foot, room.min(axis=1), shortest, grashof, *inside]
+    return np.column_stack([np.ravel(column) for column in columns])
 
 
 def motion_values(

@@ -1,7 +1,7 @@
 """The optimisation problem of the paper's Section 6, once: variables, objective, constraints, for populations."""
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -161,21 +161,13 @@ class Problem:
     def batch(self, x: FloatArray) -> Design:
         """The designs of a population, shape (n, variables) or without gear ratios, as a batch."""
         gear_ratio = x[:, -1] if x.shape[1] == len(self.search) else np.ones(len(x))
-        values = np.column_stack([x[:, :LENGTH_COUNT], gear_ratio])
-        return self._replaced(values.T[..., None])
+        values, kind = np.column_stack([x[:, :LENGTH_COUNT], gear_ratio]).T[..., None], self.template.linkage.kind
+        pairs = zip(VARIED, values, strict=True)
+        return replaced(self.template, {name: own for name, own in pairs if kind in COMPONENTS[name].variable.kinds})
 
     def design(self, x: FloatArray, name: str) -> Design:
         """One design, with the template's rider, from its variables, shape (variables,)."""
-        values = [*x[:LENGTH_COUNT].tolist(), float(x[-1])]
-        return replace(self._replaced(values), name=name)
-
-    def _replaced(self, values: Iterable[Any]) -> Design:
-        """The template with values for VARIED, but for what its kind lacks."""
-        kind = self.template.linkage.kind
-        known = {
-            name: value for name, value in zip(VARIED, values, strict=True) if kind in COMPONENTS[name].variable.kinds
-        }
-        return replaced(self.template, known)
+        return replace(self.batch(x[None]).single(0), name=name)
 
     def evaluate(self, x: FloatArray, to_beat: FloatArray | float = -np.inf) -> Evaluation:
         """Power and constraints of a population, shape (n, variables).
