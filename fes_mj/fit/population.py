@@ -10,16 +10,7 @@ from fes_mj.common.arrays import BoolArray, FloatArray
 from fes_mj.common.brief import Brief
 from fes_mj.common.units import turns_per_second
 from fes_mj.fit.search import best_seats
-from fes_mj.fit.seats import (
-    OUTSIDE_EQUAL,
-    SEAT_LIMITS,
-    Scores,
-    SeatLimits,
-    Seats,
-    losses,
-    outside_range,
-    score,
-)
+from fes_mj.fit.seats import OUTSIDE_EQUAL, SEAT_LIMITS, Scores, SeatLimits, Seats, losses, outside_range, score
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.riders import SAMPLES, Legs, Population, populations
 from fes_mj.linkage.variables import crank_speed

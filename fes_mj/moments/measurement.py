@@ -12,33 +12,14 @@ from fes_mj.common.text import printable
 from fes_mj.common.units import RPM, turns_per_second
 from fes_mj.linkage.joints import PerJoint
 from fes_mj.linkage.variables import VARIABLES
-from fes_mj.moments.averaging import (
-    coefficients,
-    declared_power_sd,
-    mean_of,
-    weights_on,
-    with_power_sd,
-    without_spikes,
-)
+from fes_mj.moments.averaging import coefficients, declared_power_sd, mean_of, weights_on, with_power_sd, without_spikes
 from fes_mj.moments.comparison import Comparison
 from fes_mj.moments.conventions import Convention
 from fes_mj.moments.files import DEGREES, moments_of
 from fes_mj.moments.joint_moments import COLUMNS, JointMoments
-from fes_mj.moments.measured_turns import (
-    LARGEST_ANGLE,
-    LARGEST_MOMENT,
-    WHAT,
-    Recording,
-    bounded,
-    measured_turns,
-)
+from fes_mj.moments.measured_turns import LARGEST_ANGLE, LARGEST_MOMENT, WHAT, Recording, bounded, measured_turns
 from fes_mj.moments.measurement_file import Description
-from fes_mj.moments.plausibility import (
-    cadence_agrees,
-    comparisons,
-    largest_gap,
-    recorded_cadence,
-)
+from fes_mj.moments.plausibility import cadence_agrees, comparisons, largest_gap, recorded_cadence
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE, ReferenceTricycle
 from fes_mj.moments.tables import load_table
 from fes_mj.moments.trial import in_order

@@ -131,9 +131,8 @@ def load_table(path: Path, what: str, wanted: Collection[str] = ()) -> Table:
     for line, row in rows:
         if len(row) != len(header):
             raise InputError(f"{path}: line {line} has {len(row)} values; the header names {len(header)} columns")
-    table = Table(
-        path, "\n".join(lines[: number - 1]), number, header, [n for n, _ in rows], [row for _, row in rows], decimal
-    )
+    preamble, numbers = "\n".join(lines[: number - 1]), [line for line, _ in rows]
+    table = Table(path, preamble, number, header, numbers, [row for _, row in rows], decimal)
     _require_whole(table, what, text.endswith("\n"))
     return table
 

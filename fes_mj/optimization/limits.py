@@ -222,11 +222,7 @@ def length_values(design: Design, lengths: FloatArray, polygon: ComplexArray) ->
 
 
 def motion_values(
-    design: Design,
-    turn: Cycles,
-    speeds: PerJoint[FloatArray],
-    inside: PerJoint[FloatArray],
-    outside: FloatArray | None,
+    design: Design, turn: Cycles, speeds: PerJoint[FloatArray], inside: PerJoint[FloatArray], outside: FloatArray | None
 ) -> FloatArray:
     """Values of motion_constraints that do not take long, in their order, of a batch with its gear ratios.
 

@@ -31,9 +31,8 @@ def repaired(problem: Problem, start: FloatArray, seed: int = 0) -> FloatArray:
             evaluation = problem.evaluate(np.vstack([around, x]))
             if evaluation.feasible.any():
                 kept = evaluation.x[evaluation.feasible]
-                return np.asarray(
-                    kept[np.argmin(np.abs((kept[:, : len(low)] - origin) / np.where(width, width, 1)).sum(axis=1))]
-                )
+                apart = np.abs((kept[:, : len(low)] - origin) / np.where(width, width, 1)).sum(axis=1)
+                return np.asarray(kept[np.argmin(apart)])
             least = int(np.argmin(evaluation.violation))
             if evaluation.violation[least] < violation:
                 best, violation = evaluation.x[least], evaluation.violation[least]

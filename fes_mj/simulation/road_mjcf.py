@@ -39,11 +39,7 @@ _FAR = 1e6  # rad, an upper limit that is never reached: MuJoCo has no one-sided
 
 
 def build_road_mjcf(
-    ride: "ride.Ride",
-    timestep: float = TIMESTEP,
-    *,
-    integrator: str = "discrete",
-    options: ModelOptions = COMPLETE,
+    ride: "ride.Ride", timestep: float = TIMESTEP, *, integrator: str = "discrete", options: ModelOptions = COMPLETE
 ) -> Spec:
     """The model of build_mjcf with both legs, set on the road at the ride's start.
 

@@ -39,10 +39,7 @@ LoopMaker: TypeAlias = Callable[[TorqueSource, tuple[Leg, ...]], Loop]
 
 
 def feedback_loop(
-    torque: TorqueSource,
-    legs: tuple[Leg, ...],
-    record: tuple[str, ...] = ("efc_force",),
-    every: int = FORCE_EVERY,
+    torque: TorqueSource, legs: tuple[Leg, ...], record: tuple[str, ...] = ("efc_force",), every: int = FORCE_EVERY
 ) -> Loop:
     """The loop in Python. Its records are fields of MjData after the first and then after each `every` steps.
 

@@ -78,9 +78,8 @@ def build(turn: QuasiStatic, of: str = "aluminium", safety: float = SAFETY) -> B
 def _sized(turn: QuasiStatic, chosen: Material, safety: float, thickness: float) -> Build:
     """With plates of this thickness: sizes grow until layers, masses and loads ask for no more."""
     design, smallest = turn.design, pin_stock().diameter[0]
-    pins = {joint: smallest for joint in design.linkage.architecture.joints if joint not in JOINTS} | {
-        BOUGHT: PEDAL_HOLE
-    }
+    joints = (joint for joint in design.linkage.architecture.joints if joint not in JOINTS)
+    pins = dict.fromkeys(joints, smallest) | {BOUGHT: PEDAL_HOLE}
     widths = dict.fromkeys(hole_places(design), plate_stock().width[0])
     while True:
         plates = {body: _plate(design, body, pins, width, thickness) for body, width in widths.items()}

@@ -46,12 +46,7 @@ _CHARACTERISTICS = (
 )
 _AT_ONCE = 50  # designs, for whose power over the turn arrays of a few megabytes are needed
 _OF_MUSCLES = ("power_mean_W", "power_sd_W", "work_per_turn_J", "extrapolated_share")  # another power than the moments'
-_DYNAMIC = {
-    "simulated_power_mean_W": float,
-    "loop_gap_max_m": float,
-    "cadence_ripple": float,
-    "timestep_s": float,
-}
+_DYNAMIC = {"simulated_power_mean_W": float, "loop_gap_max_m": float, "cadence_ripple": float, "timestep_s": float}
 
 
 def column_types(study: Study) -> dict[str, type]:

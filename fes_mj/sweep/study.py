@@ -132,9 +132,8 @@ def load_study(path: Path, cadence: float | None = None, muscles: MuscleOptions 
             raise InputError(f"{path}: cadence_rpm is given here; leave out --cadence")
         grid.content["cadence_rpm"] = [cadence]
     analysis, size = settings.choice("analysis", ANALYSES, "static"), _few(sample, "size", sample.whole("size", 1))
-    chunk = _chunk(
-        settings, "muscles" if muscles else analysis, size * math.prod(_count(grid, axis) for axis in grid.content)
-    )
+    points = size * math.prod(_count(grid, axis) for axis in grid.content)
+    chunk = _chunk(settings, "muscles" if muscles else analysis, points)
     axes = {axis: _axis(grid, axis) for axis in grid.content}
     designs, moments = ([_beside(path, name) for name in axes[axis]] for axis in NAMES)
     files = [Path(name) for name in designs if Path(name).suffix]
