@@ -83,15 +83,11 @@ class Case(Brief, Setup):
 
     @cached_property
     def massless(self) -> Simulation:
-        """The run with almost no masses and no weight."""
-        return self.steps.run(BenchOptions(Physics(self.near_massless, gravity=0.0)))
-
-    @cached_property
-    def near_massless(self) -> float:
-        """Factor on the masses at which inertia, without weight, adds INERTIA_POWER_RMS to the quasi-static power."""
+        """The run without weight and with so little of the masses that inertia adds INERTIA_POWER_RMS to statics."""
         massive = self.steps.crank_moment(self.static.motion, gravity=0.0)
         inertia_power = self.cadence * np.sqrt(np.mean((massive - self.static.crank_moment) ** 2))
-        return float(min(1.0, INERTIA_POWER_RMS / inertia_power))
+        mass_scale = float(min(1.0, INERTIA_POWER_RMS / inertia_power))
+        return self.steps.run(BenchOptions(Physics(mass_scale, gravity=0.0)))
 
     def reference_power(self, run: Simulation | None = None, mass_scale: float | None = None) -> FloatArray:
         """Exact crank power of all legs at the crank angles of a run, W; mass_scale 0 is the quasi-static curve.
