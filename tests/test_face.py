@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import fes_mj
+from fes_mj.linkage import kinematics
 
 OPTIONS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 
@@ -35,3 +36,24 @@ def test_names_are_imported_from_where_they_are_defined() -> None:
 def test_the_page_of_the_names_has_them_all() -> None:
     page = (Path(__file__).parents[1] / "docs/python.md").read_text()
     assert [name for name in fes_mj.__all__ if f"   {name}\n" not in page] == []
+
+
+def test_whatever_a_name_gives_shows_itself_in_a_line() -> None:
+    """What an example does not show too: batches, drives, and results that others hold."""
+    design, moments, muscles = fes_mj.load_design("d1"), fes_mj.load_moments("p1p2"), fes_mj.load_muscles("p1p2")
+    batch = design.with_linkage(crank=np.full((1000, 1), 0.15))
+    turn, case = fes_mj.quasi_static(design, moments), fes_mj.Case(design, moments)
+    ride = fes_mj.Ride(design, moments, duration=1.0)
+    one = fes_mj.stimulated_rider(muscles, design)
+    pulled = fes_mj.simulate(design, muscles)
+    results: list[object] = [
+        *(design, design.rider, batch, kinematics.solve(batch), moments, moments.measured_on, muscles, muscles.riders),
+        *(turn, turn.motion, turn.torque, case, case.steps, fes_mj.simulate(design, moments), pulled, pulled.torque),
+        *(ride, fes_mj.ride(ride), fes_mj.RideCase(ride), fes_mj.RideCase(ride).simulation, fes_mj.starts(ride, 4)),
+        *(one, one.riders, *fes_mj.stimulation(design), fes_mj.answer(design, [turn], muscles.riders)),
+        *(fes_mj.fit_seat(design, design.rider, moments), fes_mj.build_mjcf(design)),
+    ]
+    shown = [repr(result) for result in results]
+    assert [text for text in shown if len(text) > 200 or "\n" in text or "fes_mj." in text] == []
+    assert repr(design) == "<Design d1: cdt>"
+    assert repr(batch) == "<Design d1: cdt, a batch of 1000>"

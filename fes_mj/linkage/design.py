@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from fes_mj.common.brief import Brief
 from fes_mj.common.errors import require_one_of
 
 WHEEL_DIAMETER = 0.66  # m, paper Section 3
@@ -163,8 +164,8 @@ class Frame:
         )
 
 
-@dataclass(frozen=True)
-class Design:
+@dataclass(frozen=True, repr=False)
+class Design(Brief):
     """A named linkage together with the rider who sits on it; or a batch, in which any number may be an array.
 
     links: names of links that are made, with mass (kg), centre (m) and moment of inertia (kg m^2) of each, as
@@ -180,6 +181,10 @@ class Design:
     rider: Rider = Rider()
     frame: Frame = Frame()
     links: tuple[tuple[str, Any], ...] = ()
+
+    @property
+    def brief(self) -> str:
+        return f"{self.name}: {self.linkage.kind}{f', a batch of {self.size}' if self.is_batch else ''}"
 
     def with_linkage(self, **numbers: Any) -> "Design":
         """The design with these attributes of its linkage changed, lengths in m, angles in rad."""

@@ -12,6 +12,7 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 
 from fes_mj.common.arrays import ComplexArray, FloatArray
+from fes_mj.common.brief import Brief
 from fes_mj.linkage.design import BODIES, Design
 from fes_mj.linkage.joints import PerJoint
 
@@ -88,8 +89,8 @@ def positions(design: Design, crank_angle: FloatArray) -> Points:
     return points
 
 
-@dataclass(frozen=True)
-class Motion:
+@dataclass(frozen=True, repr=False)
+class Motion(Brief):
     """Kinematics of a design over crank angles; arrays have the shape of `positions`.
 
     crank_angle: rad. points: Jet by point name. rotation: of each body by name.
@@ -99,6 +100,10 @@ class Motion:
     crank_angle: FloatArray
     points: dict[str, Jet]
     rotation: dict[str, Rotation]
+
+    @property
+    def brief(self) -> str:
+        return f"{self.design.brief}, at {np.size(self.crank_angle)} crank angles"
 
     def direction(self, body: str) -> ComplexArray:
         """Unit vector of a body's x axis, from its origin to its tip."""

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from fes_mj.common.arrays import FloatArray
+from fes_mj.common.brief import Brief
 from fes_mj.linkage.joints import PerJoint
 from fes_mj.linkage.kinematics import Motion
 from fes_mj.linkage.legs import Leg
@@ -24,11 +25,15 @@ TABLE_SIZE = 3600  # moments are interpolated linearly on a uniform grid of 0.1 
 GRID = np.arange(TABLE_SIZE + 2) * (2 * np.pi / TABLE_SIZE)  # from top dead centre; two more for rounding at the end
 
 
-class TorqueMap:
+class TorqueMap(Brief):
     """Moment of the knee or the hip at a joint angle, in extension or flexion."""
 
     def __init__(self, moments: JointMoments) -> None:
         self.moments, self.reference = moments, moments.measured_on
+
+    @property
+    def brief(self) -> str:
+        return self.moments.name
 
     def of(self, name: str) -> "TorqueMap":
         """The map of the leg that a name or its prefix (linkage.legs) belongs to: the left leg may have its own."""

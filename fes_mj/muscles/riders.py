@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from fes_mj.common.arrays import FloatArray
+from fes_mj.common.brief import Brief
 from fes_mj.common.errors import InputError
 from fes_mj.common.reading import DATA
 from fes_mj.common.writing import replacing
@@ -24,8 +25,8 @@ _TRICYCLE = ("R1x", "R1y", "R2", "R6", "seat_angle", "thigh", "shank", "mass")  
 _WRITES = "`fes_mj moments TRIAL --fit-muscles -o RIDER.npz` writes one"
 
 
-@dataclass(frozen=True, eq=False)
-class Riders:
+@dataclass(frozen=True, eq=False, repr=False)
+class Riders(Brief):
     """Riders by what is not known of them, each quantity of shape (members,), in the unit of data/muscles/priors.toml.
 
     likelihood: logarithm of the density of the member and of what was measured, up to a constant, shape (members,).
@@ -36,6 +37,10 @@ class Riders:
     values: Mapping[str, FloatArray]
     likelihood: FloatArray
     measured_on: ReferenceTricycle = PAPER_TRICYCLE
+
+    @property
+    def brief(self) -> str:
+        return f"{self.name}: {len(self)} who may have been measured"
 
     def __len__(self) -> int:
         return len(self.likelihood)

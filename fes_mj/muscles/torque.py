@@ -6,7 +6,9 @@ from functools import cached_property
 import numpy as np
 
 from fes_mj.common.arrays import FloatArray
+from fes_mj.common.brief import Brief
 from fes_mj.common.machine_code import in_lists
+from fes_mj.common.units import RPM
 from fes_mj.linkage import kinematics
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.joints import JOINTS, PerJoint
@@ -30,12 +32,16 @@ _FINE = 7200
 _FINE_TURN = np.arange(_FINE) * (2 * np.pi / _FINE)
 
 
-@dataclass(frozen=True, eq=False)
-class MuscleTorque:
+@dataclass(frozen=True, eq=False, repr=False)
+class MuscleTorque(Brief):
     """Of one rider, stimulated on one design at one cadence; every leg does the same, its part of a turn later."""
 
     stimulated: Stimulated
-    _memories: dict[tuple[float, float], Memory] = field(default_factory=dict, repr=False)
+    _memories: dict[tuple[float, float], Memory] = field(default_factory=dict)
+
+    @property
+    def brief(self) -> str:
+        return f"{self.design.name} {self.riders.name} muscles at {self.cadence / RPM:.1f} rpm"
 
     @property
     def riders(self) -> Riders:

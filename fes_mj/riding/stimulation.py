@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from fes_mj.common.arrays import FloatArray
+from fes_mj.common.brief import Brief
 from fes_mj.linkage import kinematics
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.joints import PerJoint
@@ -41,8 +42,8 @@ POINTS = 3600  # of a turn; the zeros between them are interpolated
 ZERO = "right crank arm points backwards (away from the rider's front); angles grow as the tricycle goes forward"
 
 
-@dataclass(frozen=True)
-class Window:
+@dataclass(frozen=True, repr=False)
+class Window(Brief):
     """One window of one muscle group of one leg. Angles in rad from ZERO, starts within a turn, ends after them.
 
     works: where its moment drives the crank. core: where by at least CORE of its largest effect there. swing: of the
@@ -55,6 +56,11 @@ class Window:
     core: tuple[float, float]
     swing: float
     both_joints: float | None
+
+    @property
+    def brief(self) -> str:
+        on, off = (math.degrees(end) % 360 for end in self.works)
+        return f"{self.leg} {self.muscle}: {on:.0f} to {off:.0f} deg"
 
     @property
     def width(self) -> float:

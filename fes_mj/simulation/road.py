@@ -10,6 +10,7 @@ import numpy as np
 from scipy.integrate import cumulative_trapezoid
 
 from fes_mj.common.arrays import FloatArray
+from fes_mj.common.brief import Brief
 from fes_mj.common.machine_code import COMPILED, readable
 from fes_mj.linkage.legs import TWO_LEGS, Leg
 from fes_mj.riding.ride import Ride
@@ -45,8 +46,8 @@ def interpreted_road_loop(make_control: MakeControl) -> Loop:
     return controlled_loop(bound)
 
 
-@dataclass(frozen=True, eq=False)
-class RoadRun:
+@dataclass(frozen=True, eq=False, repr=False)
+class RoadRun(Brief):
     """A ride simulated by MuJoCo; every sensor of the model at every step, shape (steps, ...).
 
     start_energy: potential and kinetic, of the exact start, J.
@@ -58,6 +59,10 @@ class RoadRun:
     start_energy: float
     run: Run
     legs: ClassVar[tuple[Leg, ...]] = TWO_LEGS  # whose muscles count
+
+    @property
+    def brief(self) -> str:
+        return f"{self.ride.name}, {len(self.run.sensors) - 1} steps"
 
     @cached_property
     def sensors(self) -> Sensors:
