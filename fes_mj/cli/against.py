@@ -13,11 +13,8 @@ PUBLISHED = "published"
 _ENOUGH = 20  # riders, below which their quantiles say little
 
 
-def against(what: str, options: PrintOptions, others: Mapping[str, Any]) -> int:
-    """Published measurements, or an experiment of one's own. others: what cannot be asked for as well, by option."""
-    for name, value in others.items():
-        if value:
-            raise InputError(f"{name} and --against exclude each other: no check runs; leave out one of them")
+def against(what: str, options: PrintOptions) -> int:
+    """Published measurements, or an experiment of one's own."""
     if what == PUBLISHED:
         _published(options)
     elif what.endswith(".toml"):

@@ -22,7 +22,9 @@ from fes_mj.cli.options import (
     PrintOptions,
     Seed,
     bounds,
+    changed,
     needs,
+    refuse_beside,
     speed_at,
 )
 from fes_mj.cli.tables import or_dash, print_notes, span
@@ -145,9 +147,7 @@ def fit(
     # with another gear ratio the crank has the cadence at the speed of the tricycle
     loaded = loaded.with_linkage(gear_ratio=ratio * speed_at(cadence, loaded) / loaded.linkage.cadence)
     if population:
-        for name, value in {"out": out, **vars(who)}.items():
-            if value is not None:
-                raise InputError(f"--{name} is of one rider; leave it out with --population")
+        refuse_beside("--population", {"--out": out, **changed(who)})
         if plot:
             require_extra("report", "matplotlib")
         require_writable(plot, "the picture", ".png", inputs)

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 import fes_mj
-from fes_mj.cli.options import Out
+from fes_mj.cli.options import Out, refuse_beside
 from fes_mj.cli.process import interruption_code
 from fes_mj.cli.search_options import SearchOptions, shell_word
 from fes_mj.common.console import conclude, errors, print_table, progress_bar, say
@@ -48,6 +48,9 @@ def optimize(
         report: A page on the design (.html): numbers, motion, power, constraints.
     """
     options.check()
+    if options.print_problem:
+        asked = {"--out": out, "--report": report, "--json": options.json, "--quiet": options.quiet}
+        refuse_beside("--print-problem", asked)
     _check_files(out, report, options)
     moments, compared_with = options.load_moments(), load_design(options.like or options.speeds_of)
     if options.print_problem:

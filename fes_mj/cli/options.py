@@ -1,7 +1,7 @@
 """Options that several commands share, and what they load."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple, TypeAlias
 
@@ -48,6 +48,21 @@ def needs(flag: str, *values: str) -> Callable[[ArgumentCollection], None]:
                 raise ValueError(f"{argument.name} needs {' '.join([flag, ' or '.join(values)]).rstrip()}.")
 
     return check
+
+
+def changed(options: object, *but: str) -> dict[str, bool]:
+    """Which options of a dataclass, by flag, are not as they are by default."""
+    known = {field.name: field.default for field in fields(options)}  # type: ignore[arg-type]
+    return {
+        f"--{name.replace('_', '-')}": value != known[name] for name, value in vars(options).items() if name not in but
+    }
+
+
+def refuse_beside(flag: str, others: Mapping[str, object]) -> None:
+    """Raise InputError if an option is given that has no effect beside `flag`, which asks for something else."""
+    for name, value in others.items():
+        if value:
+            raise InputError(f"{name} and {flag} exclude each other; leave out one of them")
 
 
 DESIGN_HELP = (

@@ -12,10 +12,10 @@ from cyclopts import Group, Parameter
 from fes_mj.cli.against import against as report_against
 from fes_mj.cli.cases import checked_case
 from fes_mj.cli.drive import DriveOptions
-from fes_mj.cli.options import DesignName, Flag, RunOptions, needs
+from fes_mj.cli.options import DesignName, Flag, RunOptions, changed, needs, refuse_beside
 from fes_mj.cli.tables import print_checks, print_notes
-from fes_mj.common.checks import Check, definitions, find
-from fes_mj.common.console import conclude, number, print_table, say, track
+from fes_mj.common.checks import Check, definitions
+from fes_mj.common.console import conclude, print_table, say, track
 from fes_mj.common.errors import InputError
 from fes_mj.common.provenance import provenance
 from fes_mj.common.writing import require_writable, write_text
@@ -56,11 +56,16 @@ def validate(
         against: Instead: `published`, predictions beside what others measured, or the file of an experiment (.toml),
             what it does to the probabilities of the gains. Both report: the exit code is 0 whatever agrees.
     """
+    if instead := [flag for flag, value in {"--explain": explain, "--against": against}.items() if value is not None]:
+        files = {"--report": report, "--video": video, "--junit": junit}
+        others = {"DESIGN": designs, "--quick": quick, "--faults": faults, **files, **dict.fromkeys(instead[1:], True)}
+        refuse_beside(instead[0], {**others, **changed(options, "json", "quiet"), **changed(drive)})
     if explain is not None:
-        return _explain(explain)
+        from fes_mj.cli.explanation import explain as print_explanation
+
+        return print_explanation(explain, options)
     if against is not None:
-        others = {"DESIGN": designs, "--report": report, "--junit": junit, "--faults": faults, "--quick": quick}
-        return report_against(against, options, others)
+        return report_against(against, options)
     cases = list(_cases(designs or DESIGNS, options, drive, quick))
     _check_files(report, junit, video, drive.inputs(options, *designs))
     checks = _run_checks(cases, quick, options)
@@ -81,27 +86,6 @@ def validate(
         lambda: _print(ok, checks, detections, measured, options.verbose),
     )
     return 0 if ok else 1
-
-
-def _explain(name: str) -> int:
-    from fes_mj.optimization.limits import MEANINGS
-
-    if name == "all":
-        rows = [(check.name, check.kind, number(check.limit, check.unit)) for check in definitions().values()]
-        print_table("Checks", ("check", "kind", "limit"), rows)
-        return 0
-    if meaning := MEANINGS.get(name.strip().lower().replace(" ", "_").replace("-", "_")):
-        say(f"{name}: {meaning.words}", "bold")
-        say(f"  a limit of `fes_mj optimize`; where it is set: {meaning.where}")
-        say("  `fes_mj optimize ... --print-problem` writes the problem file that has it")
-        return 0
-    check = find(name)
-    say(f"{check.name}: {check.quantity}", "bold")
-    say(f"  kind: {check.kind}")
-    say(f"  limit: {number(check.limit, check.unit)}: {check.reason}")
-    say(f"  guards against: {check.guards}")
-    say(f"  usually broken by: {check.breaks}")
-    return 0
 
 
 def _cases(designs: Sequence[str], options: RunOptions, drive: DriveOptions, quick: bool) -> Iterator[VerificationCase]:

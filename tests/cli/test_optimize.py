@@ -135,6 +135,8 @@ def test_own_moments_have_no_error_bar(tmp_path: Path, capsys: pytest.CaptureFix
         (["cdt", "--problem", "missing.toml"], "missing.toml: cannot read the problem"),
         (["cdt", "--ripple-limit", "0"], '"0.0" for --ripple-limit. Must be > 0.'),
         (["cdt", "--ripple-limit", "nan"], '"nan" for --ripple-limit'),
+        (["cdt", "--print-problem", "--json"], "--json and --print-problem exclude each other"),
+        (["cdt", "--print-problem", "-o", "b.toml"], "--out and --print-problem exclude each other"),
         (["cdt", "--samples", "100"], "--samples needs --riders"),
         (["cdt", "--riders", "one", "--samples", "100"], "--samples needs --riders population or population-p10"),
         (["cdt", "--riders", "population", "--samples", "1"], '"1" for --samples. Must be >= 10.'),

@@ -145,6 +145,18 @@ def test_all_are_listed_and_an_unknown_one_is_refused(capsys: pytest.CaptureFixt
     assert re.fullmatch(r"fes_mj: loopgap: .* loop_gap\?\n", capsys.readouterr().err)
 
 
+@pytest.mark.parametrize("name", ["mean_power", "grashof", "all"])
+def test_an_explanation_is_json_where_that_is_asked_for(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    code, content = answer(capsys, "validate", "--explain", name)
+    assert code == 0
+    if name == "all":
+        assert [check["name"] for check in content["checks"]] == [*definitions()]
+        content = content["checks"][0]
+    assert set(content) >= ({"name", "words", "where"} if name == "grashof" else {"name", "limit", "guards", "breaks"})
+    assert run(["validate", "--explain", name, "-q"]) == 0
+    assert capsys.readouterr().out == ""
+
+
 def test_published_measurements_are_a_report(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -167,7 +179,16 @@ def test_published_measurements_are_a_report(
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (["d1", "--against", "published"], "exclude each other"),
+        (["d1", "--against", "published"], "DESIGN and --against exclude each other"),
+        (["--explain", "mean_power", "--against", "published"], "--against and --explain exclude each other"),
+        (["d9", "--explain", "mean_power"], "DESIGN and --explain exclude"),
+        (["--explain", "mean_power", "--cadence", "50"], "--cadence and --explain exclude"),
+        (["--explain", "mean_power", "--drive", "muscles"], "--drive and --explain exclude"),
+        (["--against", "published", "--group", "p1p2"], "--group and --against exclude"),
+        *(
+            (["--explain", "mean_power", *option], f"{option[0]} and --explain exclude")
+            for option in (["--report", "a.html"], ["--junit", "a.xml"], ["--quick"], ["--faults"], ["--verbose"])
+        ),
         (["--against", "somebody"], "must be published, or the .toml file"),
         (["--against", "none.toml"], "cannot read the experiment"),
     ],
