@@ -1,5 +1,6 @@
 """The ways a request can be refused; the command line turns each into one message and an exit code."""
 
+import math
 from collections.abc import Collection
 from importlib import import_module
 from types import ModuleType
@@ -51,6 +52,13 @@ def require_one_of(name: str, value: object, allowed: Collection[str]) -> None:
     """Raise InputError for a word that is none of those allowed."""
     if value not in allowed:
         raise InputError(f"{name} is {value!r}; it must be one of {', '.join(allowed)}")
+
+
+def require_within(name: str, value: float, low: float, high: float = math.inf, unit: str = "") -> None:
+    """Raise InputError for a number that is not finite or not from low to high, ends included, all in the unit."""
+    if not (low <= value <= high and math.isfinite(value)):
+        allowed = f"at least {low:g}" if high == math.inf else f"from {low:g} to {high:g}"
+        raise InputError(f"{name} is {value:g}{unit and ' '}{unit}; it must be {allowed}{unit and ' '}{unit}")
 
 
 def require_extra(extra: str, *modules: str) -> ModuleType:

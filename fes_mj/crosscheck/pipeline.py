@@ -42,15 +42,14 @@ class Setup:
 
     design: Design
     drive: Drive
-    cadence: float = math.nan
+    cadence: float = cast("float", None)  # until __post_init__
     timestep: float | None = None
     turns: int = 1
     legs: int = 1
     bearings: Bearings | None = None
 
     def __post_init__(self) -> None:
-        given = None if math.isnan(self.cadence) else self.cadence
-        object.__setattr__(self, "cadence", crank_speed(self.design, given))
+        object.__setattr__(self, "cadence", crank_speed(self.design, self.cadence))
         if self.timestep is None and isinstance(self.drive, Muscles) and self.drive.jumps:
             steps = FINER_WHERE_IT_JUMPS * steps_per_turn(self.design, self.cadence, turns=self.turns)
             object.__setattr__(self, "timestep", 2 * math.pi / self.cadence / steps)
@@ -115,7 +114,7 @@ class Pipeline(Setup):
         Raises AssemblyError if the linkage does not close.
         """
         driven_speed(self.design, self.drive, self.cadence, self.legs)
-        motion = self.motion(kinematics.uniform_turn(points or turn_points(self.design)))
+        motion = self.motion(kinematics.uniform_turn(turn_points(self.design) if points is None else points))
         joint_moment, torque = self.joint_moment(motion, leg), self.torque.of(leg)
         crank_moment, reactions = self.equilibrium(motion, joint_moment)
         turn = (motion, self.cadence, joint_moment, crank_moment, reactions)

@@ -66,12 +66,12 @@ class RideCase(Brief):
         for MuJoCo, half of it; beside a step that is given, half of that. A run that fails a check for its step becomes
         the trial of a finer one. Raises UnstableError if it breaks down, InputError for too many steps.
         """
-        step = self.timestep or ride_timestep(self.reference)
+        step = ride_timestep(self.reference) if self.timestep is None else self.timestep
         try:
             trial = self.simulated(2 * step)
         except UnstableError:
-            trial = self.simulated(step / 2 if self.timestep else step)
-        if self.timestep:
+            trial = self.simulated(step if self.timestep is None else step / 2)
+        if self.timestep is not None:
             return trial, self.simulated(step)
         run, failed = self.simulated(tried_timestep(self.reference, trial)), None
         while finer := finer_timestep(self.reference, run, failed):

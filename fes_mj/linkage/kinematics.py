@@ -13,6 +13,7 @@ import numpy as np
 
 from fes_mj.common.arrays import ComplexArray, FloatArray
 from fes_mj.common.brief import Brief
+from fes_mj.common.errors import require_within
 from fes_mj.linkage.design import BODIES, Design
 from fes_mj.linkage.joints import PerJoint
 
@@ -20,7 +21,8 @@ Points: TypeAlias = dict[str, ComplexArray]  # point name -> positions over cran
 
 
 def uniform_turn(points: int) -> FloatArray:
-    """So many crank angles over a turn, from 0, rad, shape (points,)."""
+    """So many crank angles over a turn, from 0, rad, shape (points,). Raises InputError for none."""
+    require_within("points", points, 1)
     return np.linspace(0.0, 2 * np.pi, points, endpoint=False)
 
 

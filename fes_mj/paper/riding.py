@@ -81,10 +81,10 @@ def ride_all(silent: bool) -> list[Riding]:
     return [_riding(load_design(name), group, muscles[group], kind) for group, name, kind in cases]
 
 
-def drawn_rides(ride: Ride, muscles: Muscles, count: int | None = None) -> list[Ride]:
+def drawn_rides(ride: Ride, muscles: Muscles, count: int = DRAWS) -> list[Ride]:
     """A ride with the rider, the dimensions and the legs of each draw; without those that cannot turn or be driven."""
     assert isinstance(ride.drive, StimulatedRider)
-    design, group, count = ride.design, muscles.riders.name, count or DRAWS
+    design, group = ride.design, muscles.riders.name
     drawn = realisations(design, load_moments(group), count)
     values = drawn.dimensions | drawn.legs
     members = np.linspace(0, len(muscles.riders) - 1, count).astype(int)  # which are independent of each other

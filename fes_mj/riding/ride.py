@@ -8,7 +8,7 @@ import numpy as np
 
 from fes_mj.common.arrays import FloatArray
 from fes_mj.common.brief import Brief
-from fes_mj.common.errors import InputError, require_one_of
+from fes_mj.common.errors import InputError, require_one_of, require_within
 from fes_mj.common.units import KMH
 from fes_mj.linkage.design import TRICYCLE_SPEED, WHEEL_DIAMETER, Design
 from fes_mj.linkage.inertia import GRAVITY, CrankInertia, inertias
@@ -20,6 +20,7 @@ from fes_mj.statics.turn import LegTurns
 from fes_mj.statics.validity import turning_in_range
 
 TRANSMISSIONS = ("freewheel", "fixed")
+SHORTEST = 1e-6  # s, of a ride
 AIR_DENSITY = 1.2  # kg/m^3, at 20 deg C and sea level
 
 
@@ -41,6 +42,12 @@ class Road:
     rolling_mass: float = 3.0
     rolling_resistance: float = 0.008
     drag_area: float = 0.4
+
+    def require_possible(self) -> None:
+        """Raise InputError for numbers that no road has."""
+        require_within("slope", self.slope, -1, 1)
+        for name in ("tricycle_mass", "rolling_mass", "rolling_resistance", "drag_area"):
+            require_within(name, getattr(self, name), 0)
 
     @property
     def angle(self) -> float:
@@ -106,8 +113,12 @@ class Ride(Brief):
     def require_possible(self) -> None:
         """Raise AssemblyError if the linkage does not turn, InputError for joints that the drive knows nothing of.
 
-        InputError also for a transmission that is none.
+        InputError also for a transmission that is none, and numbers that are.
         """
+        require_within("duration", self.duration, SHORTEST, unit="s")
+        require_within("launch", self.launch, 0, unit="m/s")
+        require_within("start", self.start, -math.inf, unit="rad")
+        self.road.require_possible()
         require_one_of("transmission", self.transmission, TRANSMISSIONS)
         if isinstance(self.drive, JointMoments):
             for leg in TWO_LEGS:

@@ -55,7 +55,7 @@ class Starts(Brief):
         }
 
 
-def starts(ride: Ride, angles: int | None = None) -> Starts:
+def starts(ride: Ride, angles: int = ANGLES) -> Starts:
     """Try rides from rest, launches and slopes. angles: crank angles that are tried, over half a turn.
 
     A faster launch and a gentler slope are taken to do whatever a slower and a steeper one do. Raises InputError as
@@ -66,7 +66,7 @@ def starts(ride: Ride, angles: int | None = None) -> Starts:
     <Starts r2 p1p2 freewheel 0 %: from rest at 50 % of the crank angles, anywhere at 1.4 km/h>
     """
     require_extra("optimize", "numba")
-    half_turn = np.linspace(0, np.pi, angles or ANGLES, endpoint=False)
+    half_turn = np.linspace(0, np.pi, angles, endpoint=False)
 
     def rides(**changes: Any) -> bool:
         return solved(replace(ride, **changes)).rides

@@ -9,7 +9,7 @@ import numpy as np
 
 from fes_mj.common.arrays import ComplexArray, FloatArray
 from fes_mj.common.checks import LEAST_POWER, definitions
-from fes_mj.common.errors import InputError
+from fes_mj.common.errors import InputError, require_within
 from fes_mj.common.units import RPM
 from fes_mj.linkage import kinematics
 from fes_mj.linkage.design import BODIES, BRANCHES, Design
@@ -134,7 +134,8 @@ FEWEST_STEPS = 2880
 # Most designs are content with the fewest steps by far: if a degree between the angles shows no error above this share
 # of what is allowed, 0.05 deg do not show one above all of it.
 GLANCE, WELL_WITHIN = FINE_TURN[::20], 0.25
-LONGEST_TIMESTEP = 0.02  # s, of those that a user asks for
+SHORTEST_TIMESTEP, LONGEST_TIMESTEP = 1e-9, 0.02  # s, of those that a user asks for
+LEAST_TURN = 1e-3
 # All turns together. With the near-massless run beside it that is a gigabyte and half a minute.
 MOST_STEPS = 1_000_000
 TRIAL = 2 * np.pi / 20_000  # rad a step: still of second order near a dead centre, not yet touched by rounding
@@ -152,8 +153,11 @@ def steps_per_turn(design: Design, cadence: float, timestep: float | None = None
     cadence: rad/s. timestep: s; asks for the whole number of steps nearest to it instead. Errors are of second order
     in the step, so N is the largest of n sqrt(E(n) / (SHARE limit)) with n trial steps (docs/theory.md). Raises
     AssemblyError for a linkage that does not close, InputError where all turns together take more than MOST_STEPS, or
-    a turn more than rounding allows.
+    a turn more than rounding allows, and for turns or a time step that are none.
     """
+    require_within("turns", turns, LEAST_TURN)
+    if timestep is not None:
+        require_within("timestep", timestep, SHORTEST_TIMESTEP, LONGEST_TIMESTEP, "s")
     needed = _needed_steps(design, cadence) if timestep is None else 2 * math.pi / cadence / timestep
     steps = max(1, round(needed)) if math.isfinite(needed) else math.inf
     if turns * steps > MOST_STEPS:

@@ -195,7 +195,7 @@ def quasi_static(
     <QuasiStatic d1 p1p2: 31.14 W at 96.4 rpm>
     """
     speed = valid_speed(design, moments, cadence)
-    motion = kinematics.solve(design, kinematics.uniform_turn(points or turn_points(design)))
+    motion = kinematics.solve(design, kinematics.uniform_turn(turn_points(design) if points is None else points))
     torque = torque_map(moments)
     joint_moment = torque.along(motion, speed)
     return QuasiStatic(motion, speed, joint_moment, *equilibrium(motion, joint_moment), torque)

@@ -155,7 +155,7 @@ def in_keyframe(field: str, joint: str, change: Callable[[float], float]) -> Ste
 
 
 def coarser(steps: Pipeline, options: BenchOptions = PLAIN, *, timestep: float | None = None, **own: Any) -> Any:
-    count = steps_per_turn(steps.design, steps.cadence, timestep or steps.timestep)
+    count = steps_per_turn(steps.design, steps.cadence, steps.timestep if timestep is None else timestep)
     return Pipeline.run(steps, options, timestep=16 * 2 * math.pi / steps.cadence / count, **own)
 
 

@@ -71,7 +71,7 @@ def render_video(
         shown = (np.arange(0, end, 1 / FRAMES_PER_SECOND) / run.timestep).astype(int)
         write_video(path, _ride_pictures(case, shown, end), len(shown), quiet)
     else:
-        speed = speed or slow_motion(case.cadence)
+        speed = slow_motion(case.cadence) if speed is None else speed
         shown = steps_shown(case.simulation, speed)
         write_video(path, pictures(case, shown, speed, answer), len(shown), quiet, REPEATS)
 
