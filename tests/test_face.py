@@ -57,3 +57,28 @@ def test_whatever_a_name_gives_shows_itself_in_a_line() -> None:
     assert [text for text in shown if len(text) > 200 or "\n" in text or "fes_mj." in text] == []
     assert repr(design) == "<Design d1: cdt>"
     assert repr(batch) == "<Design d1: cdt, a batch of 1000>"
+
+
+D1, P1P2 = fes_mj.load_design("d1"), fes_mj.load_moments("p1p2")
+NO_RUNS = {
+    "timestep 0": lambda: fes_mj.simulate(D1, P1P2, timestep=0),
+    "timestep -1": lambda: fes_mj.build_mjcf(D1, timestep=-1),
+    "timestep 10": lambda: fes_mj.Case(D1, P1P2, timestep=10).simulation,
+    "turns 0": lambda: fes_mj.simulate(D1, P1P2, turns=0),
+    "turns nan": lambda: fes_mj.simulate(D1, P1P2, turns=math.nan),
+    "points 0": lambda: fes_mj.quasi_static(D1, P1P2, points=0),
+    "cadence nan": lambda: fes_mj.Case(D1, P1P2, cadence=math.nan),
+    "duration 0": lambda: fes_mj.ride(fes_mj.Ride(D1, P1P2, duration=0)),
+    "duration inf": lambda: fes_mj.RideCase(fes_mj.Ride(D1, P1P2, duration=math.inf)).simulation,
+    "launch nan": lambda: fes_mj.ride(fes_mj.Ride(D1, P1P2, launch=math.nan)),
+    "slope nan": lambda: fes_mj.ride(fes_mj.Ride(D1, P1P2, fes_mj.Road(slope=math.nan))),
+    "rolling_mass -1": lambda: fes_mj.ride(fes_mj.Ride(D1, P1P2, fes_mj.Road(rolling_mass=-1))),
+    "angles 0": lambda: fes_mj.starts(fes_mj.Ride(D1, P1P2), angles=0),
+}
+
+
+@pytest.mark.parametrize("case", NO_RUNS)
+def test_a_number_that_no_run_has_is_refused_by_name_and_value(case: str) -> None:
+    name, value = case.split()
+    with pytest.raises(fes_mj.InputError, match=rf"{name} is {value}\b"):
+        NO_RUNS[case]()

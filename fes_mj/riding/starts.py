@@ -8,7 +8,7 @@ import numpy as np
 
 from fes_mj.common.arrays import BoolArray, FloatArray
 from fes_mj.common.brief import Brief
-from fes_mj.common.errors import require_extra
+from fes_mj.common.errors import require_extra, require_within
 from fes_mj.common.units import KMH
 from fes_mj.linkage.design import TRICYCLE_SPEED
 from fes_mj.riding.ride import Ride
@@ -66,6 +66,7 @@ def starts(ride: Ride, angles: int = ANGLES) -> Starts:
     <Starts r2 p1p2 freewheel 0 %: from rest at 50 % of the crank angles, anywhere at 1.4 km/h>
     """
     require_extra("optimize", "numba")
+    require_within("angles", angles, 1)
     half_turn = np.linspace(0, np.pi, angles, endpoint=False)
 
     def rides(**changes: Any) -> bool:

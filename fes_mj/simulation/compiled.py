@@ -12,7 +12,7 @@ from typing import Any, NamedTuple, TypeAlias
 import mujoco
 import numpy as np
 
-from fes_mj.common.arrays import FloatArray
+from fes_mj.common.arrays import FloatArray, IntArray
 from fes_mj.common.errors import require_extra
 from fes_mj.common.machine_code import inlined_machine_code, kept_machine_code, machine_code, sources
 from fes_mj.linkage.joints import JOINTS
@@ -21,7 +21,7 @@ from fes_mj.linkage.torque_source import TorqueSource
 from fes_mj.moments.torque_map import TorqueMap, scalar_map
 from fes_mj.simulation.bench import joint_drives
 from fes_mj.simulation.road_control import Memory, RoadControl, act, memory_of
-from fes_mj.simulation.stepping import FORCE_EVERY, Loop, Records, drive_addresses
+from fes_mj.simulation.stepping import FORCE_EVERY, Loop, Records, drive_addresses, servos_of
 
 _numba: Any = require_extra("optimize", "numba", "llvmlite")
 
@@ -38,16 +38,21 @@ _position, _position_sensors, _velocity, _velocity_sensors, _step2 = (
 
 
 class Fields(NamedTuple):
-    """What of MjData a loop reads and writes; lead: speeds at the positions' own time, held: those of MuJoCo."""
+    """What of MjData a loop reads and writes; lead: speeds at the positions' own time, held: those of MuJoCo.
+
+    servos: of stepping.servos_of, shape (servos, 2).
+    """
 
     qpos: FloatArray
     qvel: FloatArray
     qacc: FloatArray
     ctrl: FloatArray
+    actuator_velocity: FloatArray
     sensordata: FloatArray
     efc_force: FloatArray
     lead: FloatArray
     held: FloatArray
+    servos: IntArray
 
 
 # Steps a model: half a time step, addresses of model and data, arguments of the control, fields, rows of sensors and
@@ -73,6 +78,8 @@ def step(pointers: tuple[int, int], fields: Fields) -> None:
     _velocity(model, data)
     for i in range(len(fields.held)):
         fields.qvel[i] = fields.held[i]
+    for row in range(len(fields.servos)):
+        fields.actuator_velocity[fields.servos[row, 0]] = fields.qvel[fields.servos[row, 1]]
     _velocity_sensors(model, data)
     _step2(model, data)
 
@@ -122,7 +129,18 @@ def compiled_controlled_loop(
         sensor_rows = np.empty((count + 1, model.nsensordata))
         force_rows = np.empty((-(-count // FORCE_EVERY) if forces else 0, len(force)))
         lead, held = np.empty((2, model.nv))
-        fields = Fields(data.qpos, data.qvel, data.qacc, data.ctrl, data.sensordata, force, lead, held)
+        fields = Fields(
+            data.qpos,
+            data.qvel,
+            data.qacc,
+            data.ctrl,
+            data.actuator_velocity,
+            data.sensordata,
+            force,
+            lead,
+            held,
+            np.array(servos_of(model), int).reshape(-1, 2),
+        )
         pointers = (model._address, data._address)
         advance(model.opt.timestep / 2, pointers, arguments(model), fields, sensor_rows, force_rows)
         if forces and data.efc_force.ctypes.data != force.ctypes.data:

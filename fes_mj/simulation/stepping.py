@@ -93,12 +93,14 @@ def controlled_loop(control: Control, record: tuple[str, ...] = (), every: int =
         position, position_sensors, velocity = mujoco.mj_fwdPosition, mujoco.mj_sensorPos, mujoco.mj_fwdVelocity
         velocity_sensors, second = mujoco.mj_sensorVel, mujoco.mj_step2
         read, half = data.sensordata.tobytes, model.opt.timestep / 2
+        speed, servo_speed, servos = memoryview(qvel), cast("Any", memoryview(data.actuator_velocity)), servos_of(model)
         width, place = data.sensordata.nbytes, 0
         sensors = bytearray((count + 1) * width)
         fields: dict[str, list[bytes]] = {name: [] for name in record}
         for number in range(count):
             # MuJoCo's speeds lag its positions by half a step: with those at the positions' own time, moments and
-            # centrifugal forces are of second order. A step without mj_step1's look for bad states: mj_step2 has one.
+            # centrifugal forces are of second order. A servo holds the speed that is integrated: told another one it
+            # would ring. What mj_step1 does beyond this is a look for bad states, of which mj_step2 has another.
             np.multiply(acceleration, half, out=lead)
             np.add(lead, qvel, out=lead)
             act()
@@ -108,6 +110,8 @@ def controlled_loop(control: Control, record: tuple[str, ...] = (), every: int =
             qvel[:] = lead
             velocity(model, data)
             qvel[:] = held
+            for servo, dof in servos:
+                servo_speed[servo] = speed[dof]
             velocity_sensors(model, data)
             second(model, data)
             sensors[place : place + width] = read()
@@ -119,6 +123,12 @@ def controlled_loop(control: Control, record: tuple[str, ...] = (), every: int =
         return np.frombuffer(sensors).reshape(count + 1, -1), records
 
     return loop
+
+
+def servos_of(model: mujoco.MjModel) -> list[tuple[int, int]]:
+    """Index of every actuator whose force goes by the speed of its joint, and of this in qvel."""
+    joint = model.actuator_trnid[:, 0]
+    return [(int(servo), int(model.jnt_dofadr[joint[servo]])) for servo in np.flatnonzero(model.actuator_biastype)]
 
 
 def drive_addresses(model: mujoco.MjModel, name: str) -> tuple[int, int, int]:
