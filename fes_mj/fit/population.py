@@ -9,8 +9,8 @@ import numpy as np
 from fes_mj.common.arrays import BoolArray, FloatArray
 from fes_mj.common.brief import Brief
 from fes_mj.common.units import turns_per_second
-from fes_mj.fit.search import best_seats
-from fes_mj.fit.seats import OUTSIDE_EQUAL, SEAT_LIMITS, Scores, SeatLimits, Seats, losses, outside_range, score
+from fes_mj.fit.search import best_seats, scores
+from fes_mj.fit.seats import OUTSIDE_EQUAL, SEAT_LIMITS, SeatLimits, Seats, losses, outside_range
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.riders import SAMPLES, Legs, Population, populations
 from fes_mj.linkage.variables import crank_speed
@@ -180,10 +180,7 @@ def _offered(people: Legs, thigh: FloatArray, shank: FloatArray, seats: FloatArr
 
 def _chosen(design: Design, people: Legs, offered: FloatArray, table: WorkTable) -> Seats:
     """The best of the seats that people try, the first of which is as drawn; in none do they get farther outside."""
-    count = offered.shape[1]
-    thigh, shank = (np.repeat(lengths, count)[:, None] for lengths in (people.thigh, people.shank))
-    scores = score(design.with_rider(thigh=thigh, shank=shank), Seats(*offered.reshape(-1, 3).T[..., None]), table)
-    known = Scores(*(column.reshape(-1, count) for column in scores))
+    known = scores(design, np.column_stack([people.thigh, people.shank]), offered, table)
     more = known.outside[:, :1] - known.outside.min(axis=1, keepdims=True)
     best = losses(known, known, outside_slack=np.minimum(more, OUTSIDE_EQUAL)).argmin(axis=1)
     return Seats(*offered[np.arange(len(best)), best].T)
