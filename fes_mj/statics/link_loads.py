@@ -71,12 +71,10 @@ class LinkLoads:
             }
             for along, arm in _arms(plate):
                 for number, start in enumerate([plate.holes[0], *arm[:-1]]):
-                    beyond = arm[number:]
-                    pull, bending, across = (np.asarray(sum(part)) for part in zip(*(
-                        ((own[joint] * np.conj(along)).real, (np.conj(place - start.place) * own[joint]).imag,
-                         levers[joint] * np.abs(own[joint]))
-                        for joint, place, _ in beyond
-                    ), strict=True))  # fmt: skip
+                    beyond = [(own[hole.joint], hole.place - start.place, levers[hole.joint]) for hole in arm[number:]]
+                    pull = np.sum([(force * np.conj(along)).real for force, _, _ in beyond], axis=0)
+                    bending = np.sum([(np.conj(reach) * force).imag for force, reach, _ in beyond], axis=0)
+                    across = np.sum([lever * np.abs(force) for force, _, lever in beyond], axis=0)
                     length = float(abs(arm[-1].place - start.place))
                     yield Section(name, start.joint, arm[-1].joint, pull, bending, across, length)
 
