@@ -1,11 +1,14 @@
 """`fes_mj draw`: files, JSON, and one message for what cannot be drawn."""
 
 import json
+import re
 from pathlib import Path
 
 import pytest
 
+import fes_mj
 from fes_mj.cli.app import run
+from fes_mj.statics.sizes import FORCE_POINTS, build
 
 OWN = """
 [linkage]
@@ -46,6 +49,20 @@ def test_a_foot_in_the_ground_is_said_and_fails(tmp_path: Path, capsys: pytest.C
     (tmp_path / "own.toml").write_text(OWN.format(ground=-0.5))
     assert run(["draw", str(tmp_path / "own.toml"), "-o", str(tmp_path / "own")]) == 1
     assert "Cannot be built so" in capsys.readouterr().out
+
+
+def test_what_is_printed_has_the_units_of_its_heads(capsys: pytest.CaptureFixture[str]) -> None:
+    """34 teeth at the wheel by 26 at the crank are 0.18 % less than 1.31; the pedal's axle is one of 9/16 inch."""
+    from fes_mj.cli.draw import _print
+
+    made = build(fes_mj.quasi_static(fes_mj.load_design("trt"), fes_mj.load_moments(), points=FORCE_POINTS))
+    _print(made)
+    text, crank = capsys.readouterr().out, made.plates["crank"]
+    width, thickness = f"{1000 * crank.width:g}", f"{1000 * crank.thickness:g}"
+    assert re.search(rf"crank +{width} +{thickness} +{made.mass['crank']:.3f} +1\b", text)
+    assert re.search(r"pedal +14\.3 +\d+ +1500\b", text)
+    assert re.search(r"ratio 1\.31: 26 .* 34 .* -0\.18 %", text)
+    assert f"{1000 * made.stack.feet:.0f} mm" in text
 
 
 @pytest.mark.parametrize(

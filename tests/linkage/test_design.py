@@ -7,7 +7,7 @@ import pytest
 
 from fes_mj.common.errors import InputError
 from fes_mj.common.units import RPM
-from fes_mj.linkage.design import SEXES, Linkage, Rider
+from fes_mj.linkage.design import SEXES, TRICYCLE_SPEED, WHEEL_DIAMETER, Frame, Linkage, Rider
 from fes_mj.linkage.design_file import load_design
 from fes_mj.linkage.inertia import DE_LEVA, FOOT_LENGTH
 from fes_mj.linkage.legs import LEGS
@@ -36,6 +36,23 @@ def test_a_cadence_that_is_not_given_is_the_designs_own() -> None:
     design = load_design("d1")
     assert crank_speed(design) == design.linkage.cadence
     assert crank_speed(design, 6.0) == 6.0
+
+
+def test_numbers_that_a_linkage_has_by_itself() -> None:
+    """A wheel that the crank turns 1.5 times as fast; the hinge of the crank seen from the hip; a seat of 30 deg."""
+    linkage = Linkage("crt", -0.7 - 0.3j, 0.15, 0.07, 0.2 + 0.1j, gear_ratio=1.5)
+    assert linkage.cadence == pytest.approx(1.5 * TRICYCLE_SPEED / (WHEEL_DIAMETER / 2), rel=1e-15)
+    assert linkage.crank_centre == pytest.approx(-0.5 - 0.2j)
+    assert linkage.seat_angle == pytest.approx(math.radians(30))
+
+
+def test_what_stands_still_moves_with_the_hips_way() -> None:
+    known = Frame((0.1 - 0.2j, -0.5 - 0.1j), 0.04, 0.2, 0.5, 0.3 - 0.25j, -0.5)
+    assert known.moved(0.02 + 0.03j) == Frame(
+        (pytest.approx(0.12 - 0.17j), pytest.approx(-0.48 - 0.07j)),
+        *(0.04, 0.2, 0.5, pytest.approx(0.32 - 0.22j), pytest.approx(-0.47)),
+    )
+    assert Frame().moved(0.02 + 0.03j) == Frame()
 
 
 def test_the_designs_of_a_batch_are_those_that_it_was_made_of() -> None:

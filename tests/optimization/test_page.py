@@ -20,6 +20,7 @@ from tests.browser import NEEDS_BROWSER, PHONE, browser, check_on_a_phone
 from tests.optimization.conftest import problem_of
 
 pytest.importorskip("jinja2")
+from fes_mj.optimization import page
 from fes_mj.optimization.page import page_html
 
 __all__ = ["browser"]  # the fixture
@@ -65,6 +66,20 @@ def test_every_objective_of_the_front_is_drawn_and_tabled(html: str, front: Fron
     rows = np.array(cells, float).reshape(-1, 4)
     np.testing.assert_allclose(rows[:, 1:3], front.power, atol=0.005)
     np.testing.assert_allclose(rows[:, 3], front.fluctuation, atol=0.0005)
+
+
+def test_the_star_is_at_the_design_that_was_chosen(front: Front, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of the front, the one with its variables; over the fluctuation once for each group."""
+    drawn: list[Any] = []
+    monkeypatch.setattr("fes_mj.viewing.charts.page_svg", lambda _, axes: drawn.append(axes) or "")
+    for row in (0, 1):
+        page._front_figures(front, front.x[row])
+        powers, over = drawn[-2:]
+        stars = [
+            [line.get_xydata().tolist() for line in axes.lines if line.get_marker() == "*"] for axes in (powers, over)
+        ]
+        assert stars[0] == [[front.power[row].tolist()]]
+        assert stars[1] == [[[front.fluctuation[row], power]] for power in front.power[row]]
 
 
 def test_without_smoothness_there_is_no_column_of_it(front: Front) -> None:

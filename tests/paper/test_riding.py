@@ -4,6 +4,7 @@ import json
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -81,6 +82,28 @@ def test_everything_that_matters_on_a_road_is_drawn_and_always_the_same() -> Non
     assert {one.drive.cadence for one in drawn} == {design.linkage.cadence}
 
 
+def test_rows_have_the_units_of_their_heads() -> None:
+    """Of made-up rides: km/h, rpm and per cent; the deviation is that of what was drawn, and what stops has none."""
+    flat = [
+        SimpleNamespace(mean_speed=speed, cadence=cadence, ripple=ripple, coasting_share=0.25)
+        for speed, cadence, ripple in ((2.0, 5.0, 0.1), (2.5, 6.0, 0.2), (3.5, 8.0, 0.4), (None, None, None))
+    ]
+    uphill = [SimpleNamespace(rides=rides, stopped_at=None if rides else 7.4) for rides in (False, True, False)]
+    begun = [
+        SimpleNamespace(share=share, launch=launch, slope=slope)
+        for share, launch, slope in ((0.5, 1.0, 0.02), (0.7, 2.0, 0.04), (0.6, None, None))
+    ]
+    gears: dict[float, riding.Gear | None] = {0.0: riding.Gear(1.234, 2.5, True), 0.02: None}
+    made = riding.Riding(load_design("trt"), "p1p2", "fixed", 0.03, flat, uphill, begun, gears)  # type: ignore[arg-type]
+    names = ("TRT", "p1p2", "fixed")
+    (speeds,), (start,), (gear,) = (
+        [*map(tuple, of([made]).rows)] for of in (riding.speed_table, riding.start_table, riding.gear_table)
+    )
+    assert speeds == (*names, "7.2 +- 2.5", "48 +- 14", "10.0 +- 14.1", 25.0, 3.0, "stops after 7 s", "1 of 2")
+    assert start == (*names, "50 +- 7", "3.6", "2.0")
+    assert gear == (*names, 1.31, "1.23 (end of the range)", 9.0, None, None)
+
+
 @pytest.mark.long
 def test_a_riding_of_few_draws(monkeypatch: pytest.MonkeyPatch) -> None:
     """Every table of the page from one design."""
@@ -95,3 +118,5 @@ def test_a_riding_of_few_draws(monkeypatch: pytest.MonkeyPatch) -> None:
     rides = [riding._riding(load_design("trt"), "p1p3", muscles, kind) for kind in TRANSMISSIONS]
     tables = (riding.speed_table, riding.start_table, riding.gear_table, riding.transmission_table)
     assert [len(table(rides).records()) for table in tables] == [2, 2, 2, 1]
+    gears = [gear for one in rides for gear in one.gears.values() if gear]
+    assert {round(gear.ratio / load_design("trt").linkage.gear_ratio, 9) for gear in gears} <= {0.8, 1.0}
