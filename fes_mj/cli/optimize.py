@@ -102,13 +102,15 @@ def _search(kind: str, moments: fes_mj.JointMoments, options: SearchOptions, fin
 
     searches = 1 if options.method == "nsga-ii" else options.searches
     problem = options.problem_options()
-    total = searches * (options.budget or usual_budget(options.method, options.drive.drive == "muscles"))
-    with progress_bar(f"{options.method}, evaluations", total, options.silent) as advance:
+    budget = options.budget
+    if budget is None:
+        budget = usual_budget(options.method, options.drive.drive == "muscles")
+    with progress_bar(f"{options.method}, evaluations", searches * budget, options.silent) as advance:
         return fes_mj.optimize(
             kind,
             moments,
             method=options.method,
-            budget=options.budget,
+            budget=budget,
             searches=options.searches,
             seed=options.seed,
             smooth=options.smooth,

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, ExitStack
 from typing import Any, NamedTuple, TypeVar
 
-from fes_mj.common.errors import InputError, require_extra
+from fes_mj.common.errors import InputError, require_extra, require_within
 
 Task = TypeVar("Task")
 Result = TypeVar("Result")
@@ -36,8 +36,7 @@ def run_tasks(
     A task should take seconds. Raises InputError for a scheduler that does not answer, for fewer than one job, and if
     a local worker process dies (a cluster repeats the lost task elsewhere).
     """
-    if workers.jobs < 1:
-        raise InputError(f"--jobs is {workers.jobs}; it must be at least 1")
+    require_within("jobs", workers.jobs, 1)
     if workers.jobs == 1 and not workers.cluster:
         yield from ((index, function(task)) for index, task in enumerate(tasks))
         return

@@ -8,6 +8,7 @@ import numpy as np
 
 from fes_mj.common.arrays import BoolArray, FloatArray
 from fes_mj.common.brief import Brief
+from fes_mj.common.errors import require_within
 from fes_mj.common.units import turns_per_second
 from fes_mj.fit.search import best_seats, scores
 from fes_mj.fit.seats import OUTSIDE_EQUAL, SEAT_LIMITS, SeatLimits, Seats, losses, outside_range
@@ -118,12 +119,15 @@ def fit_population(
 ) -> PopulationFit:
     """Sample so many men and women; `done` is called STEPS times.
 
-    Raises AssemblyError for a linkage that cannot turn whoever sits where, InputError for a cadence that cannot be run.
+    Raises AssemblyError for a linkage that cannot turn whoever sits where, InputError for a cadence that cannot be run,
+    a batch, no samples and a negative seed.
 
     >>> fes_mj.fit_population(fes_mj.load_design("d1"), fes_mj.load_moments("p1p2"), samples=100)
     <PopulationFit d1 p1p2: 100 % of men, 100 % of women can ride>
     """
     crank_speed(design)
+    require_within("samples", samples, 1)
+    require_within("seed", seed, 0)
     table, random = WorkTable.of(moments), np.random.default_rng(seed)
     legs = {who: populations()[key].sample(samples, random) for who, key in PEOPLE.items()}
     thigh, shank = (

@@ -106,7 +106,7 @@ def fit_seat(design: Design, rider: Rider, moments: JointMoments, limits: SeatLi
     By seats.losses, in steps of 0.01 mm and 0.001 deg.
 
     That no seat within the limits suits is a result as well. Raises AssemblyError for a linkage that cannot turn
-    whoever sits where, InputError for a cadence that cannot be run.
+    whoever sits where, InputError for a cadence that cannot be run and for a batch.
 
     >>> rider = fes_mj.Rider(thigh=0.45, shank=0.47, mass=62, sex="female")
     >>> fes_mj.fit_seat(fes_mj.load_design("d1"), rider, fes_mj.load_moments("p1p2"))

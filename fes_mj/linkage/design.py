@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fes_mj.common.brief import Brief
-from fes_mj.common.errors import require_one_of
+from fes_mj.common.errors import InputError, require_one_of
 
 WHEEL_DIAMETER = 0.66  # m, paper Section 3
 TRICYCLE_SPEED = 5.71 / 3.6  # m/s, paper Section 3
@@ -204,6 +204,14 @@ class Design(Brief):
         """Number of designs in a batch; 1 for a single design."""
         arrays = (*_arrays(self.linkage).values(), *_arrays(self.rider).values())
         return max((len(array) for array in arrays), default=1)
+
+    def require_single(self) -> None:
+        """Raise InputError for a batch."""
+        if self.is_batch:
+            raise InputError(
+                f"{self.name}: a batch of designs; fes_mj.statics.cycles.cycles turns them all at once, single(row) is "
+                "one of them"
+            )
 
     def taken(self, rows: Any) -> "Design":
         """The designs of a batch at `rows` (an index array, a mask or a slice), as a batch; a single one is itself."""

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fes_mj.common.arrays import BoolArray, ComplexArray, FloatArray
-from fes_mj.common.errors import AssemblyError, InputError
+from fes_mj.common.errors import AssemblyError
 from fes_mj.linkage.assembly import (
     DYADS,
     LEAST_CLEARANCE,
@@ -69,11 +69,7 @@ def turning(design: Design) -> Turning:
 
     Raises AssemblyError, naming links, crank angle and margin, unless it turns, and InputError for a batch.
     """
-    if design.is_batch:
-        raise InputError(
-            f"{design.name}: a batch of designs; fes_mj.statics.cycles.cycles turns them all at once, single(row) is "
-            "one of them"
-        )
+    design.require_single()
     return _established(design)
 
 

@@ -87,8 +87,9 @@ def runnable(cadence: Any) -> Any:
 def crank_speed(design: Design, cadence: float | None = None) -> float:
     """Crank speed of a run, rad/s: `cadence` or, if it is None, that of Eq. 16.
 
-    Raises InputError unless it is a cadence that can be run.
+    Raises InputError unless it is a cadence that can be run, and for a batch.
     """
+    design.require_single()
     allowed, speed = VARIABLES["cadence_rpm"].allowed, design.linkage.cadence if cadence is None else cadence
     if runnable(speed):
         return speed

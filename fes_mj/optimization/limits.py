@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from fes_mj.common.arrays import ComplexArray, FloatArray
-from fes_mj.common.errors import InputError
+from fes_mj.common.errors import InputError, require_one_of
 from fes_mj.common.reading import DATA, Section, is_list, is_number, read_toml
 from fes_mj.linkage.assembly import LEAST_CLEARANCE, grashof_margin
 from fes_mj.linkage.design import Design
@@ -70,6 +70,8 @@ def load_limits(path: Path = DEFAULT, overrides: Mapping[str, float] | None = No
 
     Raises InputError naming file, key and value of what is missing, unknown, contradictory.
     """
+    for key in overrides or ():
+        require_one_of("a limit of what can be built", key, KEYS)
     content = read_toml(path, "problem")
     for section, keys in (
         (content, tuple(_TABLES)),

@@ -12,7 +12,7 @@ from numpy.random import SeedSequence
 
 from fes_mj.common.arrays import FloatArray
 from fes_mj.common.brief import Brief
-from fes_mj.common.errors import InputError
+from fes_mj.common.errors import InputError, require_one_of, require_within
 from fes_mj.common.parallel import HERE, Workers, run_tasks
 from fes_mj.common.units import turns_per_second
 from fes_mj.linkage.design import Design
@@ -25,7 +25,7 @@ from fes_mj.optimization.moment_drive import MomentDrive
 from fes_mj.optimization.pareto import Front, pareto_front
 from fes_mj.optimization.problem import LENGTH_COUNT, Evaluation, Problem, make_problem
 from fes_mj.optimization.repair import changes, repaired
-from fes_mj.optimization.search import METHODS, BudgetSpentError, Result, Search, Start, usual_budget
+from fes_mj.optimization.search import BUDGETS, METHODS, BudgetSpentError, Result, Search, Start, usual_budget
 from fes_mj.statics.cycles import cycles
 from fes_mj.statics.work_table import WorkTable
 
@@ -152,13 +152,22 @@ def optimize(
     searches run. findings: where results are kept, and finished ones taken from. progress is told how many more
     of the budgets' evaluations are behind. problem: limits, start, people: the arguments of make_problem.
 
-    Raises InputError for what make_problem refuses, an infeasible start, and if no search finds anything feasible;
+    Raises InputError for what make_problem refuses, a method that is none, a budget or number of searches below 1, a
+    negative seed, what the method cannot do, an infeasible start, and if no search finds anything feasible;
     MissingPartError without the package of the method.
 
     >>> fes_mj.optimize("crt", fes_mj.load_moments("p1p2"), budget=1000, searches=1)
     <Optimum crt-p1p2: 24.71 W after 1000 evaluations>
     """
+    require_one_of("method", method, BUDGETS)
+    require_within("searches", searches, 1)
+    require_within("budget", 1 if budget is None else budget, 1)
+    require_within("seed", seed, 0)
     task = make_problem(kind, moments, **problem)
+    if method == "nsga-ii" and (problem.get("caution") or not task.drive.proportional):
+        raise InputError("nsga-ii weighs the powers of both groups under joint moments: not with caution or muscles")
+    if smooth and method != "nsga-ii":
+        raise InputError(f"smooth is an objective of its own, of nsga-ii; method is {method}")
     name = findings.name if findings else f"{kind}-{moments.name}"
     own = problem.get("like") or problem.get("start")
     start, repair = None, ""
@@ -168,7 +177,7 @@ def optimize(
         repair = changes(drawn, start)
     with findings.searching(task) if findings else nullcontext():
         if method == "nsga-ii":
-            budget = budget or usual_budget(method)
+            budget = usual_budget(method) if budget is None else budget
             front = _front(task, moments, budget, seed, smooth, findings)
             progress(budget)
             best = front.x[int(np.argmax(front.power.mean(axis=1)))]
@@ -209,7 +218,7 @@ def run_searches(
     """
     seeds = SeedSequence(seed).spawn(searches)
     outcomes: dict[int, Result | InputError] = {**findings.finished()} if findings else {}
-    budget = budget or usual_budget(method, not problem.drive.proportional)
+    budget = usual_budget(method, not problem.drive.proportional) if budget is None else budget
     here = workers.jobs == 1 and not workers.cluster
     progress(budget * len(outcomes))
     missing = [number for number in range(searches) if number not in outcomes]

@@ -99,7 +99,7 @@ def pareto_front(
     if best is None:
         raise InputError(
             f"no feasible {problem.template.linkage.kind} found in {budget} evaluations; "
-            "loosen a limit, widen the design space or raise --budget"
+            "loosen a limit, widen the design space or raise the budget"
         )
     # NSGA-II thins out its front where it is crowded, whichever design it loses
     x = np.unique(np.vstack([np.atleast_2d(best), search.best_x[: len(LENGTHS)]]), axis=0)

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from fes_mj.common.arrays import BoolArray, FloatArray
-from fes_mj.common.errors import InputError
+from fes_mj.common.errors import InputError, require_one_of, require_within
 from fes_mj.common.units import RPM, turns_per_second
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.design_file import DESIGNS, load_design
@@ -45,6 +45,7 @@ LENGTH_COUNT = len(VARIED) - 1  # all variables but the gear ratio, which comes 
 INFEASIBLE, _UNKNOWN = -1e4, 10.0
 BUILDABLE: Mapping[str, float] = MappingProxyType({})  # the limits of what can be built, none of them changed
 ROOM = 0.15  # m around the pivots of a design whose place is its own
+KINDS = {"crt": "r1", "cdt": "d1", "trt": "trt"}  # with a printed design, whose rider and seat are the usual ones
 _HAIR = 1e-12  # keeps a number that is computed again on the same side of its limit
 
 
@@ -271,13 +272,18 @@ def make_problem(
     limits alone. caution, people, muscles: see Problem.
     Raises InputError for what cannot be used, and for a start of another kind.
     """
+    require_one_of("kind", kind, KINDS)
+    require_within("caution", caution, 0)
+    require_within("ripple", ripple or 0, 0)
+    if like and (start or compared_with != "trt"):
+        raise InputError("like takes the place of start and compared_with; leave these out")
     compared_with, start = like or compared_with, like or start
     own = load_design(start or compared_with)
-    template = load_design({"crt": "r1", "cdt": "d1", "trt": "trt"}[kind])
+    template = load_design(KINDS[kind])
     if own.linkage.kind == kind and start:
         template = own
     elif start and not like:
-        raise InputError(f"--start {start} is a {own.linkage.kind}, not a {kind}; start from a design of that kind")
+        raise InputError(f"start is {start}, a {own.linkage.kind}, not a {kind}; start from a design of that kind")
     elif like or compared_with not in DESIGNS:
         template = replace(template, rider=own.rider).with_linkage(seat_angle=own.linkage.seat_angle)
     known = load_limits(limits, build)

@@ -11,7 +11,7 @@ import numpy as np
 from scipy.optimize import OptimizeResult, differential_evolution
 
 from fes_mj.common.arrays import FloatArray
-from fes_mj.common.errors import InputError, require_extra
+from fes_mj.common.errors import InputError, require_extra, require_one_of
 from fes_mj.optimization.problem import INFEASIBLE, LENGTH_COUNT, Problem
 
 Improved: TypeAlias = Callable[[FloatArray, float], None]  # a feasible design, shape (variables,), and its merit
@@ -92,7 +92,7 @@ class Search:
             kind = self.problem.template.linkage.kind
             raise InputError(
                 f"no feasible {kind} found in {self.evaluations} evaluations; the closest violates: {broken}. "
-                "Loosen a limit, widen the design space or raise --budget"
+                "Loosen a limit, widen the design space or raise the budget"
             )
         return Result(self.best_x, self.best, self.evaluations, np.array(self._history))
 
@@ -209,5 +209,6 @@ MUSCLE_BUDGET = 3000
 
 
 def usual_budget(method: str, muscles: bool = False) -> int:
-    """Evaluations of one search by a method, with muscles or without."""
+    """Evaluations of one search by a method, with muscles or without. Raises InputError for no method."""
+    require_one_of("method", method, BUDGETS)
     return MUSCLE_BUDGET if muscles else BUDGETS[method]

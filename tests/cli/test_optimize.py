@@ -122,7 +122,7 @@ def test_own_moments_have_no_error_bar(tmp_path: Path, capsys: pytest.CaptureFix
         (["cdt", "--like", "d1", "--start", "d2"], "--like takes the place of --start and --speeds-of"),
         (["cdt", "--limits", "paper", "--hip-swing-min", "3"], "--hip-swing-min is none of the paper's limits"),
         (["cdt", "--pin-force-max", "0"], '"0.0" for --pin-force-max. Must be > 0.'),
-        (["crt", "--start", "d1"], "--start d1 is a cdt, not a crt"),
+        (["crt", "--start", "d1"], "start is d1, a cdt, not a crt"),
         (["cdt", "--knee-speed-limit", "-3"], '"-3.0" for --knee-speed-limit. Must be > 0.'),
         (["cdt", "--hip-speed-limit", "nan"], '"nan" for --hip-speed-limit'),
         (["cdt", "--seed", "-1"], '"-1" for --seed. Must be >= 0.'),

@@ -68,7 +68,7 @@ def test_tasks_are_spread_over_processes() -> None:
 
 
 def test_fewer_than_one_job_is_refused() -> None:
-    with pytest.raises(InputError, match="--jobs is 0"):
+    with pytest.raises(InputError, match="jobs is 0"):
         list(run_tasks(slow, [0.0], Workers(jobs=0)))
 
 

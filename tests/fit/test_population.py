@@ -78,3 +78,18 @@ def test_nobody_loses_by_a_seat_that_may_move(name: str, limits: SeatLimits, mon
         assert np.all(np.nan_to_num(after.power)[same] >= np.nan_to_num(before.power)[same])
         if limits.forward == limits.up:
             assert np.array_equal(after.power, before.power, equal_nan=True)
+
+
+@pytest.mark.parametrize(("options", "said"), [({"samples": 0}, "samples is 0"), ({"seed": -1}, "seed is -1")])
+def test_numbers_that_are_none_are_refused(options: dict[str, int], said: str) -> None:
+    with pytest.raises(InputError, match=said):
+        fit_population(fes_mj.load_design("d1"), fes_mj.load_moments("p1p2"), **options)
+
+
+def test_one_design_is_fitted_and_no_batch() -> None:
+    batch, moments = fes_mj.load_design("d1").with_linkage(gear_ratio=np.array([[2.0], [2.1]])), fes_mj.load_moments()
+    for fitted in (lambda: fit_population(batch, moments), lambda: fit_seat(batch, Rider(), moments)):
+        with pytest.raises(InputError, match="d1: a batch of designs"):
+            fitted()
+    with pytest.raises(InputError, match="d1: a batch of designs"):
+        fes_mj.Case(batch, moments)
