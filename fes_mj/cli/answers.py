@@ -1,7 +1,9 @@
 """The two numbers of a design that may be quoted, on a terminal."""
 
 from collections.abc import Sequence
-from typing import Protocol
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Protocol
 
 from fes_mj.budget.answer import Answer, answer
 from fes_mj.cli.drive import DriveOptions
@@ -9,6 +11,7 @@ from fes_mj.cli.options import LoadOptions
 from fes_mj.cli.tables import heading
 from fes_mj.common.console import print_table, say
 from fes_mj.moments.files import load_moments
+from fes_mj.statics.friction import BearingLoss
 from fes_mj.statics.muscle_static import MuscleStatic
 from fes_mj.statics.turn import DrivenTurn, QuasiStatic, quasi_static
 
@@ -20,7 +23,7 @@ AS_ASSUMED, FOR_A_RIDER, PER_TRT = (
 
 
 class Turns(Protocol):
-    """A design's turn of one leg, or of several that differ: what LegTurns and MuscleStatic have in common."""
+    """A design's turn of one leg, or of several that differ, with its mean power, W: LegTurns and MuscleStatic."""
 
     @property
     def first(self) -> DrivenTurn: ...
@@ -28,17 +31,36 @@ class Turns(Protocol):
     def turns(self) -> Sequence[DrivenTurn]: ...
     @property
     def legs(self) -> int: ...
+    @property
+    def power_mean(self) -> float: ...
+    def ratio(self, other: Any) -> tuple[float, float | None]: ...
+    def summary(self) -> dict[str, Any]: ...
 
 
-def answered(drive: DriveOptions, options: LoadOptions, result: Turns) -> Answer:
-    """Both numbers of a design whose turn is known; of own moments or muscles that which they can give."""
-    first, cadence = result.first, None if options.cadence is None else result.first.cadence
-    if isinstance(first, MuscleStatic):
-        riders = first.stimulated.riders
-        assumed = () if drive.muscles else (quasi_static(first.design, load_moments(riders.name), first.cadence),)
-        return answer(first.design, assumed, riders, cadence, drive.duty)
-    moved = [turn for turn in result.turns if isinstance(turn, QuasiStatic)]
-    return answer(first.design, moved, None if options.moments else drive.load_riders(options), cadence)
+@dataclass(frozen=True, eq=False)
+class Answered:
+    """A design whose turn is known, what its bearings lose, and both numbers, found when they are asked for."""
+
+    drive: DriveOptions
+    options: LoadOptions
+    result: Turns
+    loss: BearingLoss | None = None
+
+    @property
+    def name(self) -> str:
+        return self.result.first.design.name
+
+    @cached_property
+    def answer(self) -> Answer:
+        """Of own moments or muscles that number which they can give."""
+        drive, options, first = self.drive, self.options, self.result.first
+        cadence = None if options.cadence is None else first.cadence
+        if isinstance(first, MuscleStatic):
+            riders = first.stimulated.riders
+            assumed = () if drive.muscles else (quasi_static(first.design, load_moments(riders.name), first.cadence),)
+            return answer(first.design, assumed, riders, cadence, drive.duty)
+        moved = [turn for turn in self.result.turns if isinstance(turn, QuasiStatic)]
+        return answer(first.design, moved, None if options.moments else drive.load_riders(options), cadence)
 
 
 def print_answer(result: Turns, answer: Answer, *more: tuple[str, float]) -> None:

@@ -14,7 +14,7 @@ import fes_mj
 from fes_mj.budget.answer import Answer
 from fes_mj.budget.budget import error_budget, summary
 from fes_mj.cli import tables
-from fes_mj.cli.answers import answered, print_answer
+from fes_mj.cli.answers import Answered, print_answer
 from fes_mj.cli.cases import checked_case
 from fes_mj.cli.drive import DriveOptions
 from fes_mj.cli.options import BearingOptions, DesignName, Flag, Out, RunOptions, needs
@@ -75,19 +75,19 @@ def simulate(
     # bearings lose energy, which every other check takes for an error
     checks = case.checks if case.bearings else [*verify(one_leg, quick_groups(options.legs))]
     agrees = all(check.ok for check in checks)
-    answer = answered(drive, options, case.statics)
+    numbers = Answered(drive, options, case.statics)
     content = (
-        _content(case, answer, checks, provenance([design_path(design, options.dims), *inputs[1:]]))
+        _content(case, numbers.answer, checks, provenance([design_path(design, options.dims), *inputs[1:]]))
         if paths or options.json
         else {}
     )
     if paths:
         write_results(dict(zip(paths, (json_text(content), *_texts(case)), strict=True)))
-    options.show(lambda: content, lambda: _print(case, answer, checks, options.verbose))
+    options.show(lambda: content, lambda: _print(case, numbers.answer, checks, options.verbose))
     if render:
         from fes_mj.viewing.render import render_video
 
-        render_video(case, render, speed, options.quiet, answer)
+        render_video(case, render, speed, options.quiet, numbers.answer)
         options.name_files(video=render)
     if view:
         from fes_mj.viewing import viewer

@@ -1,13 +1,12 @@
 """`fes_mj static`: the quasi-static solver alone, of one design or of several side by side."""
 
-from typing import Any, NamedTuple, Protocol
+from typing import Any
 
 import numpy as np
 
-from fes_mj.budget.answer import Answer
 from fes_mj.budget.budget import error_budget, summary
 from fes_mj.cli import tables
-from fes_mj.cli.answers import Turns, answered, print_answer
+from fes_mj.cli.answers import Answered, Turns, print_answer
 from fes_mj.cli.drive import DriveOptions
 from fes_mj.cli.options import BearingOptions, DesignName, Flag, RunOptions
 from fes_mj.common.console import print_table, say
@@ -19,27 +18,6 @@ from fes_mj.statics.friction import BearingLoss
 from fes_mj.statics.joint_forces import JointForces
 from fes_mj.statics.muscle_static import MuscleStatic
 from fes_mj.statics.turn import LegTurns, QuasiStatic, quasi_static
-
-
-class Result(Turns, Protocol):
-    """What moments and muscles have in common: a turn of one leg or several, with its mean power, W."""
-
-    @property
-    def power_mean(self) -> float: ...
-    def ratio(self, other: Any) -> tuple[float, float | None]: ...
-    def summary(self) -> dict[str, Any]: ...
-
-
-class Answered(NamedTuple):
-    """A design of the command line: its turn, the two numbers, what its bearings lose."""
-
-    result: Result
-    answer: Answer
-    loss: BearingLoss | None
-
-    @property
-    def name(self) -> str:
-        return self.result.first.design.name
 
 
 def static(
@@ -62,7 +40,7 @@ def static(
         by_muscles = drive.drive == "muscles"
         result = drive.solve(options, name) if by_muscles else LegTurns.solve(*options.load(name), options.legs)
         loss = BearingLoss(JointForces(result.first), friction) if friction else None
-        return Answered(result, answered(drive, options, result), loss)
+        return Answered(drive, options, result, loss)
 
     designs = [solved(name) for name in (design, *others)]
 
@@ -172,7 +150,7 @@ def _print_comparison(designs: list[Answered], verbose: bool) -> None:
         tables.print_notes(design.result.first, f"{design.name}: ")
 
 
-def _curves(result: Result, points: int) -> dict[str, Any]:
+def _curves(result: Turns, points: int) -> dict[str, Any]:
     """Curves of the first leg over so many crank angles; of muscles, a part of those that there are."""
     turn = result.first
     if isinstance(turn, QuasiStatic):
