@@ -23,7 +23,7 @@ from fes_mj.moments.files import load_moments
 from fes_mj.simulation.mjcf import build_mjcf
 from fes_mj.viewing import render
 from fes_mj.viewing.panel import power_panel
-from fes_mj.viewing.stage import SIDE, Camera
+from fes_mj.viewing.stage import PLOT_WIDTH, SIDE, Camera
 
 ROUNDS = 3  # of both ways in turn; medians and ratios are over rounds
 CASE = Case(load_design("d1"), load_moments())
@@ -37,13 +37,13 @@ def plain(path: Path) -> None:
     sky = spec.add_texture(name="sky", type=mujoco.mjtTexture.mjTEXTURE_SKYBOX, width=64, height=64)
     sky.builtin, sky.rgb1, sky.rgb2 = mujoco.mjtBuiltin.mjBUILTIN_GRADIENT, [1, 1, 1], [0.86, 0.89, 0.93]
     frames = list(_plain_frames(spec.compile()))
-    with mediapy.VideoWriter(path, (SIDE, SIDE + render.PLOT_WIDTH), fps=render.FRAMES_PER_SECOND, crf=20) as writer:
+    with mediapy.VideoWriter(path, (SIDE, SIDE + PLOT_WIDTH), fps=render.FRAMES_PER_SECOND, crf=20) as writer:
         for frame in frames * render.REPEATS:
             writer.add_image(frame)
 
 
 def _plain_frames(model: mujoco.MjModel) -> Iterator[Picture]:
-    run, data, panel = CASE.simulation, mujoco.MjData(model), power_panel(CASE, None, render.PLOT_WIDTH, SIDE)
+    run, data, panel = CASE.simulation, mujoco.MjData(model), power_panel(CASE, None)
     camera = Camera(run.design, LEGS[1][0]).forwards(0)
     with mujoco.Renderer(model, SIDE, SIDE) as renderer:
         for step in render.steps_shown(run, render.slow_motion(run.cadence)):

@@ -11,11 +11,11 @@ from fes_mj.budget.unknowns import DIMENSIONS, priors
 from fes_mj.common.reading import DATA
 from fes_mj.common.writing import replacing, write_text
 from fes_mj.linkage.assembly import joint_ranges
-from fes_mj.linkage.design_file import design_toml, load_design
+from fes_mj.linkage.design_file import SIX_BARS, design_toml, load_design
 from fes_mj.linkage.variables import LENGTHS, VARIABLES, lengths, with_lengths
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.paper.identification import LENGTH_ROUNDING, identify, inside_rounding
-from fes_mj.paper.printed import SIX_BARS, table1
+from fes_mj.paper.printed import table1
 
 FOLDER = DATA / "designs" / "identified"
 DRAWS = 1000

@@ -71,27 +71,17 @@ def _experiment(path: Path, options: PrintOptions) -> None:
     result = judged(experiment)
     if result["riders_effective"] < _ENOUGH:
         complain(f"{path}: the weighed riders are worth {result['riders_effective']:.0f}: intervals are rough")
-    options.show(
-        lambda: {**result, "provenance": provenance(experiment.files)},
-        lambda: _print_experiment(result),
-    )
+    options.show(lambda: {**result, "provenance": provenance(experiment.files)}, lambda: _print_experiment(result))
 
 
 def _print_experiment(result: Mapping[str, Any]) -> None:
     print_table("Best power", ("cadence, rpm", "W"), [(rpm, f"{p:.1f}") for rpm, p in result["best_power_W"].items()])
     say(f"a rider of the model misses the measured numbers by {result['misfit_rms']:.2f} of their errors (rms)")
-    probabilities = [
-        (
-            name.upper(),
-            *(_quantiles(result[when][name]["gain"]) for when in ("before", "after")),
-            *(
-                f"{100 * result[when][name][least]:.0f}"
-                for least in ("P(gain > 1.0)", "P(gain > 1.25)")
-                for when in ("before", "after")
-            ),
-        )
-        for name in result["after"]
-    ]
+    probabilities = []
+    for name in result["after"]:
+        both = [result[when][name] for when in ("before", "after")]
+        chances = (f"{100 * row[least]:.0f}" for least in ("P(gain > 1.0)", "P(gain > 1.25)") for row in both)
+        probabilities.append((name.upper(), *(_quantiles(row["gain"]) for row in both), *chances))
     columns = ("design", "gain before", "after", "P(> 1) before, %", "after", "P(> 1.25) before, %", "after")
     print_table("Power per the traditional tricycle's, best stimulated", columns, probabilities)
     quantities = [

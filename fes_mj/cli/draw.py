@@ -16,12 +16,10 @@ from fes_mj.common.writing import require_results, write_results
 from fes_mj.linkage.clearance import NEAR
 from fes_mj.linkage.design_file import load_design
 from fes_mj.linkage.plates import hole_places
-from fes_mj.statics.turn import QuasiStatic, quasi_static
+from fes_mj.statics.turn import quasi_static
 
 if TYPE_CHECKING:
     from fes_mj.statics.sizes import Build
-
-_WHOSE, _PRINT = MomentsOptions(), PrintOptions()
 
 
 def draw(
@@ -35,8 +33,8 @@ def draw(
     rounded: Flag = False,
     cadence: Cadence | None = None,
     dims: Dims = "identified",
-    whose: MomentsOptions = _WHOSE,
-    options: PrintOptions = _PRINT,
+    whose: MomentsOptions = MomentsOptions(),
+    options: PrintOptions = PrintOptions(),
 ) -> int:
     """Size links and pins of a design, lay them out in layers, and write what a workshop needs.
 
@@ -72,21 +70,16 @@ def draw(
     return 1 if made.stack.side.hindrances else 0
 
 
-def _rounded_power(turn: QuasiStatic) -> float | str:
-    """Mean crank power with lengths rounded to 0.5 mm, W; or why there is none."""
-    from fes_mj.statics.making import rounded
-
-    try:
-        return quasi_static(rounded(turn.design), turn.moments, turn.cadence).power_mean
-    except InputError as error:
-        return str(error)
-
-
 def _content(made: Build) -> dict[str, Any]:
     """The result as JSON names and units it."""
-    from fes_mj.statics.making import nearest_gears, sensitivity
+    from fes_mj.statics.making import nearest_gears, rounded, sensitivity
 
-    side, turn, power = made.stack.side, made.turn, _rounded_power(made.turn)
+    side, turn = made.stack.side, made.turn
+    power, becomes = None, "turns"
+    try:
+        power = quasi_static(rounded(turn.design), turn.moments, turn.cadence).power_mean
+    except InputError as error:
+        becomes = str(error)
     clearances = {gap.pair: gap.distance for gap in side.gaps}
     return {
         "design": made.design.name,
@@ -104,8 +97,8 @@ def _content(made: Build) -> dict[str, Any]:
         "pin_diameter_m": made.pins,
         "pin_force_max_N": {joint: made.loads.largest(joint) for joint in made.pins},
         "sensitivity_per_0.1_mm": [effect._asdict() for effect in sensitivity(made.design, turn.moments)],
-        "rounded_power_mean_W": power if isinstance(power, float) else None,
-        "rounded": power if isinstance(power, str) else "turns",
+        "rounded_power_mean_W": power,
+        "rounded": becomes,
         "gears": nearest_gears(made.design.linkage.gear_ratio)._asdict(),
     }
 
@@ -128,7 +121,7 @@ def _print(made: Build) -> None:
     gaps = [(gap.pair, f"{1e3 * gap.distance:.1f}", f"{np.degrees(gap.crank_angle):.0f}") for gap in side.near]
     head = f"Clearances over the turn below {1e3 * NEAR:g} mm; negative: passing beside each other"
     print_table(head, ("pair", "least, mm", "at crank deg"), gaps)
-    _print_making(made)
+    _print_making(_content(made), made.design.linkage.gear_ratio)
     if missing := dict.fromkeys(part for _, part in side.unknown):
         say(f"not known, as the design file says nothing of them in [frame]: {', '.join(missing)}")
     if side.hindrances:
@@ -138,24 +131,15 @@ def _print(made: Build) -> None:
         conclude(True, "Can be built", f": feet {1e3 * made.stack.feet:.0f} mm apart.")
 
 
-def _print_making(made: Build) -> None:
+def _print_making(content: dict[str, Any], ratio: float) -> None:
     """What tolerances, rounding and sprockets do to the design."""
-    from fes_mj.statics.making import nearest_gears, sensitivity
-
     rows = [
-        (
-            effect.length,
-            f"{effect.power:+.4f}",
-            f"{effect.knee:+.3f}",
-            f"{effect.hip:+.3f}",
-            f"{1e3 * effect.closing:+.2f}",
-        )
-        for effect in sensitivity(made.design, made.turn.moments)
+        (length, f"{power:+.4f}", f"{knee:+.3f}", f"{hip:+.3f}", f"{1e3 * closing:+.2f}")
+        for length, power, knee, hip, closing in map(dict.values, content["sensitivity_per_0.1_mm"])
     ]
     heads = ("length", "power, W", "knee range, deg", "hip range, deg", "to a dead centre, mm")
     print_table("If a length is 0.1 mm longer", heads, rows)
-    as_rounded = _rounded_power(made.turn)
-    say(f"with lengths rounded to 0.5 mm: {f'{as_rounded:.2f} W' if isinstance(as_rounded, float) else as_rounded}")
-    ratio = made.design.linkage.gear_ratio
-    crank, wheel, error = nearest_gears(ratio)
+    power = content["rounded_power_mean_W"]
+    say(f"with lengths rounded to 0.5 mm: {content['rounded'] if power is None else f'{power:.2f} W'}")
+    crank, wheel, error = content["gears"].values()
     say(f"gear ratio {ratio:g}: {crank} teeth at the crank, {wheel} at the wheel, {100 * error:+.2f} %")

@@ -2,18 +2,21 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Literal, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple
 
 from cyclopts import Group, Parameter
 
 from fes_mj.cli.options import DRIVEN_BY, WHOSE, LoadOptions, MomentsOptions, needs, speed_at
 from fes_mj.linkage.design import Design
-from fes_mj.linkage.design_file import load_design
+from fes_mj.linkage.design_file import DESIGNS, design_path, load_design
 from fes_mj.muscles.drive import Muscles
 from fes_mj.muscles.riders import Riders, load_riders
 from fes_mj.muscles.timing import DUTY
-from fes_mj.statics.drive import Drive
+from fes_mj.statics.drive import Drive, driven_speed
 from fes_mj.statics.muscle_static import MuscleStatic
+
+if TYPE_CHECKING:
+    from fes_mj.verification.case import VerificationCase
 
 
 class Driven(NamedTuple):
@@ -69,6 +72,19 @@ class DriveOptions:
         design, muscles = load_design(name, options.dims), self.load_muscles(options)
         speed = speed_at(options.cadence, design)
         return MuscleStatic.solve(design, muscles.riders, speed, muscles.timing, muscles.duty, options.legs)
+
+    def case(self, options: LoadOptions, name: str, **more: Any) -> "VerificationCase":
+        """The case of one leg, valid for all legs that are asked for. Raises InputError for what cannot be used.
+
+        more: of VerificationCase.
+        """
+        from fes_mj.paper.printed import table1
+        from fes_mj.verification.case import VerificationCase
+
+        loaded = self.load(options, name)
+        driven_speed(*loaded, options.legs)
+        printed = table1()[name] if name in DESIGNS and options.dims == "identified" else None
+        return VerificationCase(*loaded, expected=printed, file=design_path(name, options.dims), **more)
 
 
 @Parameter(name="*")

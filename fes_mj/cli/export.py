@@ -62,19 +62,14 @@ def export(
         scene=scene,
         inputs=options.inputs(design),
     )
-    native = None
-    if isinstance(loaded.drive, Muscles):
-        native = native_muscles(loaded.design, loaded.drive, loaded.cadence)
-    content = {"design": loaded.design.name, "cadence_rpm": loaded.cadence / RPM, "variants": variants}
-    printed.show(
-        lambda: (
-            content
-            | {"files": {kind: str(path) for kind, path in files.items()}}
-            | (native.summary() if native else {})
-        ),
-        lambda: _print(native),
-        **files,
-    )
+    native = native_muscles(loaded.design, loaded.drive, loaded.cadence) if isinstance(loaded.drive, Muscles) else None
+    content = {
+        "design": loaded.design.name,
+        "cadence_rpm": loaded.cadence / RPM,
+        "variants": variants,
+        "files": {kind: str(path) for kind, path in files.items()},
+    }
+    printed.show(lambda: content | (native.summary() if native else {}), lambda: _print(native), **files)
 
 
 def _print(native: "NativeMuscles | None") -> None:

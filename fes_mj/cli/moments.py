@@ -1,20 +1,24 @@
 """`fes_mj moments`: what is understood of a file of joint moments."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from fes_mj.cli.muscle_fit import fitted, print_fitted, require_trial
 from fes_mj.cli.options import Flag, Out, PrintOptions, warn_of
 from fes_mj.cli.tables import span, with_error
-from fes_mj.common.console import print_table, verdict
-from fes_mj.common.errors import require_extra
+from fes_mj.common.console import print_table, progress_bar, say, verdict
+from fes_mj.common.errors import InputError, require_extra
 from fes_mj.common.units import RPM
 from fes_mj.common.writing import PICTURES, require_replaceable, require_writable, write_files
 from fes_mj.moments.files import load_moments, measurement_toml, moments_csv
-from fes_mj.moments.identification import Identified, identify as identify_tricycle
+from fes_mj.moments.identification import identify as identify_tricycle
 from fes_mj.moments.joint_moments import GROUPS, JointMoments
 from fes_mj.moments.measurement import Measurement, load_measurement, measured_files
+from fes_mj.muscles.identification import STAGES
+from fes_mj.muscles.trial import MEMBERS, fit_muscles as fit_riders, quantities
+
+_CANDIDATES, _STEPS = 3000, 100  # of a fit of muscles, together a minute on one core
 
 
 def moments(
@@ -38,48 +42,55 @@ def moments(
         fit_muscles: Find muscles that may have given these moments, and write them with -o (.npz) for `--drive muscles
             --muscles`; takes a minute.
     """
-    if fit_muscles:
-        require_trial(file, out)
     path = None if file in GROUPS else Path(file)
+    if fit_muscles and not path:
+        raise InputError(f"--fit-muscles: the muscles of {file} are known: --drive muscles --group {file}")
+    if fit_muscles and not out:
+        raise InputError(
+            "--fit-muscles takes a minute and needs a place for what it finds: "
+            f"`fes_mj moments {file} --fit-muscles -o RIDER.npz`"
+        )
     inputs = measured_files(path) if path else []
     require_writable(plot, "the plot", PICTURES, inputs)
-    if fit_muscles:
-        require_writable(out, "the riders", ".npz", inputs)
-    else:
-        require_writable(out, "the moments", ".csv", inputs)
+    require_writable(out, *(("the riders", ".npz") if fit_muscles else ("the moments", ".csv")), inputs)
     beside = out.with_suffix(".toml") if out and path and not fit_muscles else None
     require_replaceable([beside] if beside else [], "the tricycle of the moments", inputs)
     measurement = load_measurement(path) if path else Measurement.of(load_moments(file))
-    warn_of(measurement.moments)
-    numbers = identify_tricycle(measurement.turns, measurement.moments.measured_on) if identify else []
+    own = measurement.moments
+    warn_of(own)
+    content = measurement.summary()
+    if identify:
+        numbers = identify_tricycle(measurement.turns, own.measured_on)
+        content["identified"] = [number._asdict() for number in numbers]
     if plot:
         require_extra("report", "matplotlib")
         from fes_mj.viewing.charts import write_figure
         from fes_mj.viewing.moments_plot import moments_figure
 
         write_figure(plot, moments_figure, measurement)
-    riders = fitted(measurement.moments, out, options) if fit_muscles and out else {}
-    if out and not fit_muscles:
-        kept = {beside: measurement_toml(measurement.moments, out)} if beside else {}
-        write_files({out: moments_csv(measurement.moments), **kept}, unnamed=kept)
-    identified = {"identified": [number._asdict() for number in numbers]} if identify else {}
-
-    def tables() -> None:
-        _print(measurement, numbers)
-        if riders and out:
-            print_fitted(riders, out)
-
-    written = {"riders" if riders else "moments": out, "measurement_file": beside}
-    options.show(
-        lambda: measurement.summary() | identified | ({"fitted": riders} if riders else {}),
-        tables,
-        plot=plot,
-        **written,
-    )
+    if out and fit_muscles:
+        content["fitted"] = _fitted(own, out, options)
+    elif out:
+        kept = {beside: measurement_toml(own, out)} if beside else {}
+        write_files({out: moments_csv(own), **kept}, unnamed=kept)
+    written = {"riders" if fit_muscles else "moments": out, "measurement_file": beside}
+    options.show(lambda: content, lambda: _print(measurement, content, out), plot=plot, **written)
 
 
-def _print(measurement: Measurement, numbers: list[Identified]) -> None:
-    content, own = measurement.summary(), measurement.moments
+def _fitted(moments: JointMoments, out: Path, options: PrintOptions) -> dict[str, Any]:
+    """Write riders who may have given the moments to `out`; what came out, as JSON names it."""
+    with progress_bar("riders", STAGES * _CANDIDATES + _STEPS * MEMBERS, options.silent) as advance:
+        riders, share = fit_riders(moments, _CANDIDATES, _STEPS, advance=advance)
+    riders.save(out)
+    return {
+        "members": len(riders),
+        "explained_share": share,
+        "muscles": [row._asdict() | {"identified": row.identified} for row in quantities(riders)],
+    }
+
+
+def _print(measurement: Measurement, content: dict[str, Any], out: Path | None) -> None:
+    own = measurement.moments
     counted = ", ".join(
         f"{content[what]} {what[:-1]}{'s' * (content[what] > 1)}" for what in ("riders", "trials", "turns", "samples")
     )
@@ -102,12 +113,14 @@ def _print(measurement: Measurement, numbers: list[Identified]) -> None:
             for row in measurement.comparisons
         ]
         print_table("Is it plausible?", ("", "recorded", "declared or expected", ""), compared)
-    if numbers:
+    if "identified" in content:
         found = [
-            (f"{row.symbol}, {row.unit}", f"{row.identified:.3f} +- {row.sd:.3f}", f"{row.declared:.3f}")
-            for row in numbers
+            (f"{symbol}, {unit}", f"{value:.3f} +- {deviation:.3f}", f"{declared:.3f}")
+            for symbol, unit, value, deviation, declared in map(dict.values, content["identified"])
         ]
         print_table("The tricycle by the angles of knee and hip", ("", "identified", "declared"), found)
+    if "fitted" in content:
+        _print_fitted(content["fitted"], out)
 
 
 def _tricycle(own: JointMoments) -> str:
@@ -119,3 +132,18 @@ def _tricycle(own: JointMoments) -> str:
         f"{design.linkage.foot:.3f} m; thigh {rider.thigh:.3f}, shank {rider.shank:.3f} m; top dead centre "
         f"{top:.1f} deg after the crank points backwards) at {reference.cadence / RPM:.2f} rpm"
     )
+
+
+def _print_fitted(content: dict[str, Any], out: Path | None) -> None:
+    """The riders' muscles, posterior beside prior, and what to do with the file."""
+    rows = []
+    for row in content["muscles"]:
+        ends = (f"{middle:.3g} ({low:.3g} to {high:.3g})" for low, middle, high in (row["prior"], row["posterior"]))
+        narrowed = f"{row['narrowed_to']:.2f}" if row["identified"] else "not identified"
+        rows.append((f"{row['name']}, {row['unit']}", *ends, narrowed))
+    print_table("The rider's muscles: median (5 to 95 %)", ("", "before", "by the trial", "narrowed to"), rows)
+    say(
+        f"{content['members']} riders, who explain {100 * content['explained_share']:.0f} % of the variance of these "
+        "moments"
+    )
+    say(f"go on with: fes_mj static DESIGN --drive muscles --muscles {out}")

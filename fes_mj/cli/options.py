@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Annotated, Any, Literal, NamedTuple, TypeAlias
+from typing import Annotated, Any, Literal, TypeAlias
 
 from cyclopts import Argument, ArgumentCollection, Group, Parameter
 from cyclopts.validators import Number, all_or_none, mutually_exclusive
@@ -98,14 +98,6 @@ WHOSE = Group("joint moments or muscles", show=False, validator=mutually_exclusi
 DRIVEN_BY = Group("what drives", show=False, validator=_no_muscles)
 
 
-class Loaded(NamedTuple):
-    """What the options of a run name: a design, the joint moments, the cadence in rad/s."""
-
-    design: Design
-    moments: JointMoments
-    cadence: float
-
-
 @Parameter(name="*")
 @dataclass
 class MomentsOptions:
@@ -163,7 +155,12 @@ class PrintOptions:
         """Whether neither tables nor progress are shown."""
         return self.json or self.quiet
 
-    def show(self, content: Callable[[], Mapping[str, Any]], tables: Callable[[], None], **files: Path | None) -> None:
+    def show(
+        self,
+        content: Callable[[], Mapping[str, Any]],
+        tables: Callable[[], None],
+        **files: Path | Sequence[Path] | None,
+    ) -> None:
         """Print the result as JSON, or as tables with the names of what was written."""
         if self.json:
             print_json(content())
@@ -171,10 +168,10 @@ class PrintOptions:
             tables()
             self.name_files(**files)
 
-    def name_files(self, **files: Path | None) -> None:
+    def name_files(self, **files: Path | Sequence[Path] | None) -> None:
         """Say where what was written is, unless JSON or nothing is printed."""
-        for content, path in files.items():
-            if path and not self.silent:
+        for content, paths in files.items() if not self.silent else ():
+            for path in [paths] if isinstance(paths, Path) else paths or ():
                 say(f"{content.replace('_', ' ')}: {path}")
 
 
@@ -192,10 +189,10 @@ class LoadOptions(MomentsOptions):
     legs: Legs = 1
     dims: Dims = "identified"
 
-    def load(self, design: str) -> Loaded:
-        """Load everything the options name. Raises InputError for what cannot be used."""
+    def load(self, design: str) -> tuple[Design, JointMoments, float]:
+        """The design, the joint moments, the cadence in rad/s. Raises InputError for what cannot be used."""
         moments, loaded = self.load_moments(self.legs), load_design(design, self.dims)
-        return Loaded(loaded, moments, speed_at(self.cadence, loaded))
+        return loaded, moments, speed_at(self.cadence, loaded)
 
 
 @Parameter(name="*")

@@ -15,7 +15,6 @@ from fes_mj.budget.answer import Answer
 from fes_mj.budget.budget import error_budget, summary
 from fes_mj.cli import tables
 from fes_mj.cli.answers import Answered, print_answer
-from fes_mj.cli.cases import checked_case
 from fes_mj.cli.drive import DriveOptions
 from fes_mj.cli.options import BearingOptions, DesignName, Flag, Out, RunOptions, needs
 from fes_mj.common.checks import Check
@@ -68,7 +67,7 @@ def simulate(
     from fes_mj.common.provenance import provenance
     from fes_mj.verification.suite import quick_groups, verify
 
-    one_leg = checked_case(design, options, drive, timestep=timestep, turns=turns, bearings=bearings.load())
+    one_leg = drive.case(options, design, timestep=timestep, turns=turns, bearings=bearings.load())
     case = one_leg if options.legs == 1 else one_leg.two_legs
     stem = f"{case.design.name} {case.drive.name}".replace(" ", "-")
     paths = require_results(out, [f"{stem}.{kind}" for kind in ("json", "csv", "xml")], inputs) if out else []

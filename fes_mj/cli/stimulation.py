@@ -1,24 +1,26 @@
 """`fes_mj stimulation`: settings of a stimulator for a design and seat, or where moments drive its crank."""
 
+from functools import partial
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 from cyclopts import Parameter
 
 from fes_mj.cli.drive import MusclesFirst
-from fes_mj.cli.effectiveness import by_moments
 from fes_mj.cli.options import Cadence, DesignName, Dims, Legs, MomentsOptions, PrintOptions, bounds, speed_at
 from fes_mj.cli.tables import span, with_error
 from fes_mj.common.console import print_table, say
 from fes_mj.common.errors import InputError, require_extra
 from fes_mj.common.units import RPM
 from fes_mj.common.writing import PAGES, require_writable, write_text
+from fes_mj.linkage.design import Design
 from fes_mj.linkage.design_file import load_design
 from fes_mj.linkage.turning import CRANK_ZERO
 from fes_mj.muscles.rules import BEST
 from fes_mj.muscles.setting import MISTIMED, Setting
 from fes_mj.muscles.settings import Settings
+from fes_mj.riding.stimulation import CORE, Window, stimulation as find_windows, summary, table_csv
 
 _SLOWEST, _STEP, _APART = 30, 10, 5  # rpm: of the cadences below the main one, by which a start passes
 
@@ -51,29 +53,39 @@ def stimulation(
     for page in pages:
         require_writable(page, "the page", PAGES, inputs)
         require_extra("report", "matplotlib")
-    if drive.drive == "moments":
-        by_moments(loaded, legs, cadence, whose, drive, csv, pages, options)
-        return
-    if drive.timing != BEST:
+    by_muscles = drive.drive == "muscles"
+    if by_muscles and drive.timing != BEST:
         raise InputError(
             f"--timing is {drive.timing}; windows that suit all riders who may be this one are those of `best`, "
             f"others are compared by `fes_mj static {design} --drive muscles --timing {drive.timing}`"
         )
-    speeds = [speed_at(rpm, loaded) for rpm in cadence or (None,)]
-    slower = np.arange(_SLOWEST, speeds[0] / RPM - _APART, _STEP) * RPM if len(speeds) == 1 else ()
-    riders, cadences = drive.load_riders(whose), [*speeds, *map(float, slower)]
-    settings = Settings.solve(loaded, riders, cadences, speeds[0], drive.duty, legs)
+    for flag, given in {"--cadence": cadence, "--moments": whose.moments, "--group": whose.group}.items():
+        if given and not by_muscles:
+            raise InputError(
+                f"{flag}: where moments drive the crank depends on the linkage alone; leave it out, or use --drive "
+                "muscles"
+            )
+    result: tuple[Any, ...]
+    if by_muscles:
+        speeds = [speed_at(rpm, loaded) for rpm in cadence or (None,)]
+        slower = np.arange(_SLOWEST, speeds[0] / RPM - _APART, _STEP) * RPM if len(speeds) == 1 else ()
+        riders, cadences = drive.load_riders(whose), [*speeds, *map(float, slower)]
+        settings = Settings.solve(loaded, riders, cadences, speeds[0], drive.duty, legs)
+        result, content, tables, table = (settings,), settings.summary, partial(_print, settings), settings.table_csv
+    else:
+        result = loaded, find_windows(loaded, legs)
+        content, tables = partial(summary, *result), partial(_print_windows, *result)
+        table = partial(table_csv, *result)
     if pages:
         from fes_mj.viewing.charts import write_figure
+        from fes_mj.viewing.rings import windows_figure
         from fes_mj.viewing.settings_page import settings_figure
 
         for page in pages:
-            write_figure(page, settings_figure, settings)
+            write_figure(page, settings_figure if by_muscles else windows_figure, *result)
     if csv:
-        write_text(csv, settings.table_csv())
-    options.show(settings.summary, lambda: _print(settings), windows=csv)
-    for page in pages:
-        options.name_files(page=page)
+        write_text(csv, table())
+    options.show(content, tables, windows=csv, page=pages)
 
 
 def _print(settings: Settings) -> None:
@@ -132,3 +144,20 @@ def _by_cadence(settings: Settings) -> list[tuple[str, ...]]:
 def _span(record: dict[str, float | None], unit: str) -> str:
     on, off = record[f"on_{unit}"], record[f"off_{unit}"]
     return "-" if on is None or off is None else f"{on:.0f} to {off:.0f}"
+
+
+def _print_windows(design: Design, windows: list[Window]) -> None:
+    """Where moments drive the crank, of the right leg."""
+    rows = []
+    for record in (window.record(design) for window in windows if window.leg == "right"):
+        works, from_top, core = (
+            f"{on:.0f} to {off:.0f}" for on, off in (record[f"{w}_deg"] for w in ("works", "works_from_tdc", "core"))
+        )
+        name, widths = f"{record['muscle']} ({record['moment']})", (record["width_deg"], record["core_width_deg"])
+        rows.append((name, f"{works} ({widths[0]:.0f})", from_top, f"{core} ({widths[1]:.0f})"))
+    columns = ("muscle", "drives the crank (width)", "from top dead centre", "core of it (width)")
+    print_table(f"{design.name}, right leg; crank angles in deg", columns, rows)
+    left = "; the left leg's are 180 deg later" if any(window.leg == "left" for window in windows) else ""
+    say(f"0: {CRANK_ZERO}{left}.")
+    say(f"Core: the joint moves at least {CORE:g} times as fast per crank angle as at best in the window.")
+    say("A stimulated muscle answers late and weakens with speed: --drive muscles says when to stimulate.")

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import Group, Parameter
 
 from fes_mj.cli.against import against as report_against
-from fes_mj.cli.cases import checked_case
 from fes_mj.cli.drive import DriveOptions
 from fes_mj.cli.options import DesignName, Flag, RunOptions, changed, needs, refuse_beside
 from fes_mj.cli.tables import print_checks, print_notes
@@ -94,7 +93,7 @@ def _cases(designs: Sequence[str], options: RunOptions, drive: DriveOptions, qui
     chosen = [options] if quick or options.group or options.moments or drive.muscles else both
     for design in dict.fromkeys(designs):
         for choice in chosen:
-            yield checked_case(design, choice, drive, refined=not (quick or drive.timing == "stimulation-by-angle"))
+            yield drive.case(choice, design, refined=not (quick or drive.timing == "stimulation-by-angle"))
 
 
 def _check_files(report: Path | None, junit: Path | None, video: Path | None, inputs: list[Path]) -> None:

@@ -99,18 +99,19 @@ def _beside(points: Sequence[complex], others: Sequence[complex], letter: float)
 
 def _pose(build: Build, place: int, layer: str) -> list[tuple[ComplexArray, str]]:
     """Outlines at a place of the turn: leg and seat thin, links in the layer."""
-    motion, lines = build.stack.side.motion, []
-    for bar in back_to_front(build.design):
-        if bar.body in build.plates or bar.part == "frame":
-            continue
-        origin, direction = 0j, 1.0 + 0j
-        if bar.body:
-            origin = complex(np.broadcast_to(motion.points[BODIES[bar.body][0]].value, FULL_TURN.shape)[place])
-            direction = complex(motion.direction(bar.body)[place])
-        lines.append((seen(bar.outline(origin, direction)), "PHANTOM"))
+    motion = build.stack.side.motion
+
+    def frame(body: str) -> tuple[complex, complex]:
+        if not body:  # the tricycle's
+            return 0j, 1.0 + 0j
+        origin = np.broadcast_to(motion.points[BODIES[body][0]].value, FULL_TURN.shape)[place]
+        return complex(origin), complex(motion.direction(body)[place])
+
+    thin = [bar for bar in back_to_front(build.design) if bar.body not in build.plates and bar.part != "frame"]
+    lines = [(seen(bar.outline(*frame(bar.body))), "PHANTOM") for bar in thin]
     for body, plate in build.plates.items():
-        origin = complex(np.broadcast_to(motion.points[BODIES[body][0]].value, FULL_TURN.shape)[place])
-        lines.append((seen(origin + complex(motion.direction(body)[place]) * rounded(plate)), layer))
+        origin, direction = frame(body)
+        lines.append((seen(origin + direction * rounded(plate)), layer))
     return lines
 
 

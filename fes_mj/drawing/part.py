@@ -3,7 +3,6 @@
 import itertools
 import math
 from collections.abc import Iterator
-from typing import NamedTuple
 
 import numpy as np
 
@@ -11,16 +10,9 @@ from fes_mj.drawing.pen import Pen
 from fes_mj.linkage.plates import Hole, Plate
 from fes_mj.statics.sizes import BOUGHT, Build, bush_wall
 
-FIRST, NEXT = 9.0, 7.0  # mm on paper from a link to its first dimension, and from there to the next
+FIRST = 9.0  # mm on paper from a link to its dimensions
 _OVER = 3.0  # mm that centre lines stand out of a hole
 _SAME = 1e-3  # mm: no dimension is shorter
-
-
-class Extent(NamedTuple):
-    """Lower left and upper right corner of a link as it is drawn in full size, mm."""
-
-    low: complex
-    high: complex
 
 
 def drawn(place: complex) -> complex:
@@ -28,11 +20,11 @@ def drawn(place: complex) -> complex:
     return 1000 * complex(place).conjugate()
 
 
-def extent(plate: Plate) -> Extent:
-    """Of a link without dimensions."""
+def extent(plate: Plate) -> tuple[complex, complex]:
+    """Lower left and upper right corner of a link as it is drawn in full size, without dimensions, mm."""
     corners, margin = np.array([drawn(corner) for corner in plate.core]), 1000 * plate.margin * (1 + 1j)
     low, high = (complex(end(corners.real), end(corners.imag)) for end in (np.min, np.max))
-    return Extent(low - margin, high + margin)
+    return low - margin, high + margin
 
 
 def draw_part(pen: Pen, plate: Plate) -> None:
@@ -63,15 +55,14 @@ def _dimensions(pen: Pen, plate: Plate) -> None:
     off = [place for place in others if abs(place.imag) > _SAME]
     chain = sorted([origin, *(place for place in others if place not in off)], key=lambda place: place.real)
     below = not off or off[0].imag > 0
-    level = low.imag - FIRST / pen.scale if below else high.imag + FIRST / pen.scale
+    levels = low.imag - FIRST / pen.scale, high.imag + FIRST / pen.scale
+    level, other_level = levels if below else levels[::-1]
     for start, end in itertools.pairwise(chain):
         pen.dimension(start, end, 1j * level)
     for place in off:
         pen.dimension(origin, place, low.real - FIRST / pen.scale, angle=90)
         if abs(place.real) > _SAME:
-            pen.dimension(
-                origin, place, 1j * (high.imag + FIRST / pen.scale if below else low.imag - FIRST / pen.scale)
-            )
+            pen.dimension(origin, place, 1j * other_level)
     pen.radius(chain[-1], 1000 * plate.margin, 30.0 if below else -30.0)
 
 

@@ -110,11 +110,7 @@ class Pen:
     @property
     def _look(self) -> dict[str, Any]:
         """Of dimensions."""
-        return {
-            "dimstyle": "PLAIN",
-            "override": {"dimlfac": 1 / self.scale},
-            "dxfattribs": {"layer": "DIMENSIONS"},
-        }
+        return {"dimstyle": "PLAIN", "override": {"dimlfac": 1 / self.scale}, "dxfattribs": {"layer": "DIMENSIONS"}}
 
     def dxf(self) -> str:
         """The drawing as a file; without a date, so that the same drawing gives the same bytes."""

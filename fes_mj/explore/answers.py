@@ -47,19 +47,9 @@ class Answers:
         self.shared = {group: load_moments(group) for group in GROUPS} | {moments.name: moments}
         self.uploads = Uploads()
         self.reader: Callable[..., Any] = here  # a server's is elsewhere
-        questions = (
-            self.start,
-            self.turn,
-            self.making,
-            self.numbers,
-            self.change,
-            self.save,
-            self.model,
-            self.open_design,
-            self.open_moments,
-        )
+        names = ("start", "turn", "making", "numbers", "change", "save", "model", "open-design", "open-moments")
         self.by_name: dict[str, Callable[[Section], Answer]] = {
-            question.__name__.replace("_", "-"): question for question in questions
+            name: getattr(self, name.replace("-", "_")) for name in names
         }
 
     def start(self, question: Section) -> Answer:

@@ -16,7 +16,8 @@ from fes_mj.linkage.design import ARCHITECTURES, BRANCHES, SEXES, Design, Frame,
 from fes_mj.linkage.riders import PRESETS, preset
 from fes_mj.linkage.variables import LONGEST, SHORTEST, VARIABLES, Variable, nearest_degrees
 
-DESIGNS = ("trt", "r1", "r2", "d1", "d2")
+SIX_BARS = ("r1", "r2", "d1", "d2")
+DESIGNS = ("trt", *SIX_BARS)
 DIMENSIONS = ("identified", "printed")
 _FOLDER = DATA / "designs"
 

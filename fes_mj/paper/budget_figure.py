@@ -9,9 +9,9 @@ from matplotlib.figure import Figure
 
 from fes_mj.budget.answer import Answer
 from fes_mj.common.style import BY_DESIGN, COLOURS, FAINT, PARTS
+from fes_mj.linkage.design_file import SIX_BARS
 from fes_mj.moments.joint_moments import GROUPS
 from fes_mj.paper.error_budget import GAINS, Budgets, ratios
-from fes_mj.paper.printed import SIX_BARS
 
 _RATIOS = np.linspace(0, 3, 301)
 _BOTH = ("as the paper assumes", "for a rider: muscles, best timing")

@@ -10,10 +10,10 @@ from fes_mj.budget.power import UncertainPower
 from fes_mj.budget.unknowns import priors
 from fes_mj.common.arrays import FloatArray
 from fes_mj.common.console import track
+from fes_mj.linkage.design_file import SIX_BARS
 from fes_mj.moments.joint_moments import GROUPS
 from fes_mj.moments.uncertainty import with_sd
 from fes_mj.paper.captions import Rows, table
-from fes_mj.paper.printed import SIX_BARS
 from fes_mj.statics.turn import QuasiStatic
 
 DRAWS = 1000  # of each unknown: a standard deviation is known to 2 % of itself

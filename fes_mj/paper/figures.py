@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from fes_mj.common.style import COLOURS, CRANK_LABEL, FAINT, LINKS, MOMENTS, X_LABEL
 from fes_mj.common.units import KMH
 from fes_mj.crosscheck.turn_case import Case
+from fes_mj.linkage.design_file import SIX_BARS
 from fes_mj.linkage.joints import JOINTS
 from fes_mj.linkage.kinematics import solve
 from fes_mj.moments.fourier import TERMS
@@ -20,12 +21,11 @@ from fes_mj.moments.uncertainty import instant_power_weights
 from fes_mj.paper.budget_figure import answer_figure, budget_figure
 from fes_mj.paper.evidence import DIRECTIONS
 from fes_mj.paper.known import BASES, Known, rms
-from fes_mj.paper.printed import SIX_BARS
 from fes_mj.paper.reconstruction import Posterior
 from fes_mj.paper.riding import Riding
 from fes_mj.paper.runs import Runs
 from fes_mj.riding.ride import TRANSMISSIONS
-from fes_mj.viewing.charts import draw_linkage, over_turn, turn_axis
+from fes_mj.viewing.charts import draw_linkage, legend_of_all, over_turn, turn_axis
 from fes_mj.viewing.people import population_figure
 
 _TURN = np.radians(np.arange(0.0, 360.5, 1.0))
@@ -40,7 +40,7 @@ def moments_over_crank(runs: Runs) -> Figure:
             _band(ax, np.degrees(_TURN), posterior.curve(joint, _TURN - top), joint, joint)
         ax.axvline(np.degrees(top), color=FAINT, lw=0.8, ls=":", label="top dead centre")
         _turn(ax, f"{group.upper()}, {title}", "joint moment, N m")
-    _legend_below(figure, axes)
+    legend_of_all(figure, axes.flat, loc="outside lower center", ncols=3)
     return figure
 
 
@@ -48,7 +48,7 @@ def power_of_the_trt(runs: Runs) -> Figure:
     """Figure 4: power of knee, hip and leg in the TRT over the turn, before and after the text."""
     figure, axes = _grid(3, 2, (7.2, 6.8), sharey="row", height_ratios=(2, 2, 1))
     _powers(axes, runs, "trt")
-    _legend_below(figure, axes)
+    legend_of_all(figure, axes.flat, loc="outside lower center", ncols=3)
     return figure
 
 
@@ -58,7 +58,7 @@ def moments_over_joint_angle(runs: Runs) -> Figure:
     for ax, group, title, posterior in _before_and_after(axes, runs.known):
         _maps(ax, posterior, PAPER_TRICYCLE.ranges.items())
         _label(ax, f"{group.upper()}, {title}", "joint angle, deg", "joint moment, N m")
-    _legend_below(figure, axes, columns=4)
+    legend_of_all(figure, axes.flat, loc="outside lower center", ncols=4)
     return figure
 
 
@@ -94,7 +94,7 @@ def truncated_maps(runs: Runs) -> Figure:
             _label(ax, f"{name.upper()}, {group.upper()}", "joint angle, deg", "joint moment, N m")
             low, high = PAPER_TRICYCLE.ranges.knee
             ax.set_xlim(*np.degrees((low - 0.04, high + 0.04)))
-    _legend_below(figure, axes, columns=4)
+    legend_of_all(figure, axes.flat, loc="outside lower center", ncols=4)
     return figure
 
 
@@ -103,7 +103,7 @@ def power_of_r2_and_d1(runs: Runs) -> Figure:
     figure, axes = _grid(6, 2, (7.2, 8.2), sharey="row", height_ratios=(2, 2, 1) * 2)
     for rows, name in zip((axes[:3], axes[3:]), ("r2", "d1"), strict=True):
         _powers(rows, runs, name)
-    _legend_below(figure, axes)
+    legend_of_all(figure, axes.flat, loc="outside lower center", ncols=3)
     return figure
 
 
@@ -135,7 +135,7 @@ def smoothness(runs: Runs) -> Figure:
             ax.plot(angle, massless, color=COLOURS["quasi-static"], label="quasi-static, no masses")
             ax.axhline(mean, color="k", lw=0.8, ls=":", label="mean")
             _turn(ax, f"{name.upper()}, P1P2, {'one leg' if legs == 1 else 'two legs half a turn apart'}")
-    _legend_below(figure, axes)
+    legend_of_all(figure, axes.flat, loc="outside lower center", ncols=3)
     return figure
 
 
@@ -168,22 +168,15 @@ def riding(runs: Runs) -> Figure:
             rides = [ride for ride in runs.rides if (ride.group, ride.transmission) == (group, transmission)]
             values = [np.array(values_of(ride), float) for ride in rides]  # None becomes NaN
             places = np.arange(len(rides)) + 0.18 * (row - 1.5)
-            look = {"color": MOMENTS[GROUPS.index(group)], "ms": 5}
-            face = look["color"] if transmission == "fixed" else "white"
+            colour, label = MOMENTS[GROUPS.index(group)], f"{group.upper()}, {transmission}"
             for place, (_, *drawn) in zip(places, values, strict=True):
-                ax.plot(np.full(len(drawn), place), drawn, ".", color=look["color"], ms=2, alpha=0.5)
-            ax.plot(
-                places,
-                [best for best, *_ in values],
-                "o",
-                markerfacecolor=face,
-                label=f"{group.upper()}, {transmission}",
-                **look,
-            )
+                ax.plot(np.full(len(drawn), place), drawn, ".", color=colour, ms=2, alpha=0.5)
+            face = colour if transmission == "fixed" else "white"
+            ax.plot(places, [best for best, *_ in values], "o", color=colour, mfc=face, ms=5, label=label)
         ax.set(xticks=range(len(rides)), xticklabels=[ride.design.name.upper() for ride in rides])
         ax.set_title(title, loc="left", fontsize=9, weight="bold")
         ax.axhline(0, color="black", lw=0.7)
-    _legend_below(figure, axes, 4)
+    legend_of_all(figure, axes.flat, loc="outside lower center", ncols=4)
     return figure
 
 
@@ -228,15 +221,6 @@ def _label(ax: Axes, title: str, x: str, y: str) -> None:
 def _turn(ax: Axes, title: str, y: str = "crank power, W") -> None:
     turn_axis(ax)
     _label(ax, title, CRANK_LABEL, y)
-
-
-def _legend_below(figure: Figure, axes: Any, columns: int = 3) -> None:
-    """Of all that the axes show, each once."""
-    entries: dict[str, Any] = {}
-    for ax in axes.flat:
-        for handle, label in zip(*ax.get_legend_handles_labels(), strict=True):
-            entries.setdefault(label, handle)
-    figure.legend([*entries.values()], [*entries], loc="outside lower center", ncols=columns)
 
 
 def _band(ax: Axes, x: Any, curve: tuple[Any, Any], colour: str, label: str, style: str = "-") -> None:

@@ -7,14 +7,13 @@ import numpy as np
 from fes_mj.common.arrays import FloatArray
 from fes_mj.common.units import turns_per_second
 from fes_mj.linkage.design import Design
-from fes_mj.linkage.design_file import DIMENSIONS, load_design
+from fes_mj.linkage.design_file import DIMENSIONS, SIX_BARS, load_design
 from fes_mj.linkage.legs import TWO_LEGS
 from fes_mj.linkage.variables import LENGTHS, lengths, with_lengths
 from fes_mj.moments.files import load_moments
 from fes_mj.moments.joint_moments import GROUPS, JointMoments
 from fes_mj.moments.uncertainty import with_sd
 from fes_mj.paper.captions import Rows, table
-from fes_mj.paper.printed import SIX_BARS
 from fes_mj.paper.runs import Runs, joint_speed
 from fes_mj.riding.ride import Ride, Road, steady_ripple
 from fes_mj.statics.characteristics import energy_swing

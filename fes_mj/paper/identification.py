@@ -19,12 +19,12 @@ from fes_mj.common.console import track
 from fes_mj.common.errors import AssemblyError
 from fes_mj.linkage.assembly import grashof_margin, joint_ranges
 from fes_mj.linkage.design import Design
-from fes_mj.linkage.design_file import load_design
+from fes_mj.linkage.design_file import SIX_BARS, load_design
 from fes_mj.linkage.kinematics import FULL_TURN
 from fes_mj.linkage.turning import turning
 from fes_mj.linkage.variables import LENGTHS, component, lengths, replaced, with_lengths
 from fes_mj.paper.captions import Rows, table
-from fes_mj.paper.printed import SIX_BARS, table1
+from fes_mj.paper.printed import table1
 from fes_mj.verification.case import Expected
 
 LENGTH_ROUNDING = 0.005  # m, Table 2 is rounded to 1 cm

@@ -11,7 +11,7 @@ import numpy as np
 
 from fes_mj.common.arrays import FloatArray
 from fes_mj.linkage.design import Design
-from fes_mj.linkage.design_file import load_design
+from fes_mj.linkage.design_file import SIX_BARS, load_design
 from fes_mj.linkage.kinematics import solve
 from fes_mj.linkage.variables import LENGTHS, replaced
 from fes_mj.moments.files import sampled_coefficients
@@ -20,7 +20,6 @@ from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.moments.uncertainty import power_weights
 from fes_mj.paper.evidence import Evidence, functional, of_group
 from fes_mj.paper.identification import LENGTH_ROUNDING, inside_rounding
-from fes_mj.paper.printed import SIX_BARS
 from fes_mj.paper.reconstruction import Hyperparameters, Posterior, System, condition, draw, reconstruct
 from fes_mj.paper.statements import allowed_curves
 

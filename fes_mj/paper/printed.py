@@ -3,8 +3,6 @@
 from fes_mj.common.reading import DATA, read_toml
 from fes_mj.verification.case import Expected
 
-SIX_BARS = ("r1", "r2", "d1", "d2")
-
 
 def table1() -> dict[str, Expected]:
     """Table 1 of the paper by design name."""

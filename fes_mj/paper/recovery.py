@@ -122,4 +122,4 @@ def _gain(posterior: Posterior) -> str:
     """D1's power per the TRT's with its standard deviation, to first order."""
     d1, trt = (weights_of(load_design(name)) for name in ("d1", "trt"))
     ratio = d1 @ posterior.mean / (trt @ posterior.mean)
-    return f"{ratio:.2f} +- {posterior.predict(d1 - ratio * trt)[1] / (trt @ posterior.mean):.2f}"
+    return with_sd(float(ratio), posterior.predict(d1 - ratio * trt)[1] / float(trt @ posterior.mean))

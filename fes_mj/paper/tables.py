@@ -9,10 +9,11 @@ from fes_mj.common.markdown import Table
 from fes_mj.common.units import RPM
 from fes_mj.fit.population import GRADES, PEOPLE, SEATS, PopulationFit
 from fes_mj.linkage.design import Rider
+from fes_mj.linkage.design_file import SIX_BARS
 from fes_mj.linkage.riders import populations
 from fes_mj.moments.joint_moments import GROUPS
 from fes_mj.paper.captions import Rows, captioned, table
-from fes_mj.paper.printed import SIX_BARS, table1
+from fes_mj.paper.printed import table1
 from fes_mj.paper.runs import Runs, joint_speed
 from fes_mj.statics.turn import ratio_sd
 

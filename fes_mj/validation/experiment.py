@@ -14,7 +14,7 @@ from fes_mj.common.errors import InputError
 from fes_mj.common.reading import Section, is_text, read_toml
 from fes_mj.common.units import RPM
 from fes_mj.linkage import kinematics
-from fes_mj.linkage.design_file import load_design
+from fes_mj.linkage.design_file import SIX_BARS, load_design
 from fes_mj.linkage.turning import turning
 from fes_mj.moments.measurement_file import read_tricycle
 from fes_mj.moments.reference_tricycle import ReferenceTricycle
@@ -29,7 +29,6 @@ from fes_mj.muscles.riders import Riders
 from fes_mj.muscles.timing import ANGLES, Windows, activation
 from fes_mj.validation.cranking import isometric
 
-SIX_BARS = ("r1", "r2", "d1", "d2")
 MODEL_ERROR = 0.05  # of the largest number of its kind: what the model misses even of a rider whom it knows
 MEMBERS = 200
 CRANKED = ("cadence_rpm", "on_deg", "off_deg", "power_W", "sd_W")

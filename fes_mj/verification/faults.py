@@ -14,15 +14,7 @@ from fes_mj.common.errors import InputError
 from fes_mj.linkage.design import Design
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.verification.case import VerificationCase
-from fes_mj.verification.suite import (
-    FULL,
-    QUICK,
-    CheckGroup,
-    refinement_checks,
-    ride_checks,
-    two_leg_checks,
-    verify,
-)
+from fes_mj.verification.suite import FULL, QUICK, CheckGroup, refinement_checks, ride_checks, two_leg_checks, verify
 
 Steps: TypeAlias = dict[str, Any]  # step of a pipeline or of a RideCase -> what takes its place
 
@@ -65,12 +57,8 @@ class Fault(NamedTuple):
     def put_into(self, case: VerificationCase) -> VerificationCase:
         """The case with the mistake in it; nothing measured of the original is taken over."""
         design = self.edit(case.design) if self.edit else case.design
-        return replace(
-            case,
-            design=design,
-            pipeline=type("FaultyPipeline", (case.pipeline,), dict(self.steps)),
-            ride_steps=self.ride_steps,
-        )
+        pipeline = type("FaultyPipeline", (case.pipeline,), dict(self.steps))
+        return replace(case, design=design, pipeline=pipeline, ride_steps=self.ride_steps)
 
 
 def in_model(kind: str, name: str = "", **changes: Any) -> Steps:

@@ -18,9 +18,8 @@ def junit_xml(checks: Sequence[Check], detections: Sequence[Detection] = ()) -> 
             text = f"{check.value:g} {check.unit} (limit {check.limit:g} {check.unit})"
             if not check.ok:
                 failure = ElementTree.SubElement(case, "failure", message=text)
-                failure.text = (
-                    f"{definitions()[check.name].guards} Usually broken by: {definitions()[check.name].breaks}"
-                )
+                known = definitions()[check.name]
+                failure.text = f"{known.guards} Usually broken by: {known.breaks}"
             ElementTree.SubElement(case, "system-out").text = text
     if detections:
         suite = _suite(root, "injected faults", len(detections), sum(not detection.caught for detection in detections))

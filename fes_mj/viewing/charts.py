@@ -2,7 +2,7 @@
 
 import io
 import warnings
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -63,6 +63,15 @@ def page_svg(figure: Figure, axes: Axes) -> str:
     handles, labels = axes.get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside upper center", ncols=3 if sum(map(len, labels)) < 50 else 2)
     return svg_text(figure)
+
+
+def legend_of_all(figure: Figure, axes: Iterable[Axes], **look: Any) -> None:
+    """A legend of the figure with all that these axes show, each once."""
+    entries: dict[str, Any] = {}
+    for ax in axes:
+        for handle, label in zip(*ax.get_legend_handles_labels(), strict=True):
+            entries.setdefault(label, handle)
+    figure.legend([*entries.values()], [*entries], **look)
 
 
 def turn_axis(axes: Axes) -> None:

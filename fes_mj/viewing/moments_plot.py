@@ -12,6 +12,7 @@ from fes_mj.moments.fourier import WIDEST_GAP, fourier, gaps
 from fes_mj.moments.measurement import Measurement
 from fes_mj.moments.recorded_angles import recorded_curve
 from fes_mj.moments.torque_map import torque_map
+from fes_mj.viewing.charts import legend_of_all
 
 _SAMPLES = 2000  # of a turn that are drawn at most
 
@@ -31,10 +32,7 @@ def moments_figure(measurement: Measurement) -> Figure:
         _over_joint(axes[joint], measurement, joint)
     title = literal(f"{measurement.moments.name}: joint moments of one leg, extension positive")
     figure.suptitle(title, weight="bold", x=0.01, ha="left")
-    entries = {
-        label: handle for part in axes.values() for handle, label in zip(*part.get_legend_handles_labels(), strict=True)
-    }  # one entry for what several plots show
-    figure.legend(entries.values(), entries.keys(), loc="outside lower left", ncols=6)
+    legend_of_all(figure, axes.values(), loc="outside lower left", ncols=6)
     return figure
 
 
@@ -43,6 +41,10 @@ def _samples(axes: Axes, joint: str, crank_angle: FloatArray, values: FloatArray
     step = max(1, len(values) // _SAMPLES)
     at = np.degrees(crank_angle[::step]) % 360
     axes.plot(at, values[::step], ".", color=COLOURS[joint], ms=2, alpha=0.3, zorder=1)
+
+
+def _from_top(axes: Axes, quantity: str) -> None:
+    axes.set(xlim=(0, 360), xticks=range(0, 361, 60), xlabel="crank angle from top dead centre, deg", ylabel=quantity)
 
 
 def _angles(axes: Axes, measurement: Measurement) -> None:
@@ -58,8 +60,7 @@ def _angles(axes: Axes, measurement: Measurement) -> None:
         if recorded is not None:
             axes.plot(angle[:-1], recorded, color=COLOURS[joint], label=joint)
         axes.plot(angle, np.degrees(pose[joint]), ":", color=COLOURS[joint], label=f"{joint} of the declared tricycle")
-    axes.set(xlim=(0, 360), xticks=range(0, 361, 60))
-    axes.set(xlabel="crank angle from top dead centre, deg", ylabel="joint angle, deg")
+    _from_top(axes, "joint angle, deg")
 
 
 def _over_crank(axes: Axes, measurement: Measurement) -> None:
@@ -88,8 +89,7 @@ def _over_crank(axes: Axes, measurement: Measurement) -> None:
             textcoords="offset points", va="top", ha="left" if right else "right", fontsize=8, color=FAINT,
         )  # fmt: skip
     axes.axhline(0, color="black", lw=0.7)
-    axes.set(xlim=(0, 360), xticks=range(0, 361, 60))
-    axes.set(xlabel="crank angle from top dead centre, deg", ylabel="joint moment, N m")
+    _from_top(axes, "joint moment, N m")
     low, high = axes.get_ylim()
     axes.set_ylim(low, high + 0.25 * (high - low))  # room for what is written above the curves
 

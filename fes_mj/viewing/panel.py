@@ -22,6 +22,7 @@ from fes_mj.muscles.drive import Muscles
 from fes_mj.riding.stimulated import StimulatedRider
 from fes_mj.riding.verdict import verdict as what_became
 from fes_mj.viewing.charts import any_letters, plot_power
+from fes_mj.viewing.stage import PLOT_WIDTH, SIDE
 
 _SMOOTH = 0.02  # s over which a ride's power is drawn
 _DPI = 100
@@ -29,19 +30,18 @@ _LEFT, _RIGHT = 0.05, 0.97  # of the width, where lines of text begin and end
 
 
 class Panel:
-    """A figure of so many pixels, which `draw` fills and whose axes it returns."""
+    """A figure of PLOT_WIDTH times SIDE pixels, which `draw` fills and whose axes it returns."""
 
-    def __init__(self, width: int, height: int, draw: Callable[[Figure], list[Axes]]) -> None:
-        self._height = height
+    def __init__(self, draw: Callable[[Figure], list[Axes]]) -> None:
         with mpl.rc_context(STYLE), any_letters():
-            figure = Figure(figsize=(width / _DPI, height / _DPI), dpi=_DPI, facecolor="white")
+            figure = Figure(figsize=(PLOT_WIDTH / _DPI, SIDE / _DPI), dpi=_DPI, facecolor="white")
             canvas = FigureCanvasAgg(figure)
             self._axes = draw(figure)
             canvas.draw()  # type: ignore[no-untyped-call]
         self._background = np.asarray(canvas.buffer_rgba())[..., :3].copy()  # type: ignore[no-untyped-call]
 
     def with_cursor(self, x: float, y: float | None = None, colour: str = INK) -> Picture:
-        """The panel with a line across all axes at x, and a dot at y on it; shape (height, width, 3)."""
+        """The panel with a line across all axes at x, and a dot at y on it; shape (SIDE, PLOT_WIDTH, 3)."""
         picture = Image.fromarray(self._background)
         draw = ImageDraw.Draw(picture)
         for axes in self._axes:
@@ -53,7 +53,7 @@ class Panel:
 
     def _pixel(self, axes: Axes, x: float, y: float) -> tuple[float, float]:
         across, up = axes.transData.transform((x, y))
-        return float(across), self._height - float(up)
+        return float(across), SIDE - float(up)
 
 
 def write_title(figure: Figure, design: Design, below: str) -> None:
@@ -74,9 +74,9 @@ def _fit(figure: Figure, y: float, text: str, size: float, **look: Any) -> None:
     line.set_fontsize(size * min(1.0, (_RIGHT - _LEFT) / width))
 
 
-def power_panel(case: Case, answer: Answer | None, width: int, height: int) -> Callable[[int], Picture]:
+def power_panel(case: Case, answer: Answer | None) -> Callable[[int], Picture]:
     """Crank power over the turn, dynamic and static: step of the turn -> the panel with the cursor there."""
-    run, panel = case.simulation, Panel(width, height, lambda figure: [_draw_power(figure, case, answer)])
+    run, panel = case.simulation, Panel(lambda figure: [_draw_power(figure, case, answer)])
     angle = np.degrees(run.crank_angle) % 360
     return lambda step: panel.with_cursor(angle[step], run.power[step], COLOURS["mujoco"])
 
@@ -121,9 +121,9 @@ def verdict(case: Case) -> str:
     return f"mean power agrees: difference {case.difference_text}"
 
 
-def ride_panel(case: RideCase, end: float, width: int, height: int) -> Callable[[int], Picture]:
+def ride_panel(case: RideCase, end: float) -> Callable[[int], Picture]:
     """Speed and muscle power by both solvers until `end`, s: step of the ride -> the panel with the cursor there."""
-    time, panel = case.simulation.trace.time, Panel(width, height, lambda figure: _draw_ride(figure, case, end))
+    time, panel = case.simulation.trace.time, Panel(lambda figure: _draw_ride(figure, case, end))
     return lambda step: panel.with_cursor(time[step])
 
 

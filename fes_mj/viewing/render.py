@@ -25,10 +25,9 @@ from fes_mj.simulation.mjcf import build_mjcf
 from fes_mj.simulation.road import RoadRun
 from fes_mj.simulation.road_mjcf import build_road_mjcf
 from fes_mj.viewing.headless import use_offscreen_gl
-from fes_mj.viewing.stage import SIDE, stage
+from fes_mj.viewing.stage import PLOT_WIDTH, SIDE, stage
 from fes_mj.viewing.wheels import add_wheels, ground
 
-PLOT_WIDTH = 560  # pixels
 FRAMES_PER_SECOND = 30
 LOOP = 4.0  # s that a turn takes in slow motion, and that the turns shown take at least
 REPEATS = 2  # of these turns
@@ -52,17 +51,12 @@ def steps_shown(run: Simulation, speed: float) -> IntArray:
 
 
 def render_video(
-    case: Case | RideCase,
-    path: Path,
-    speed: float | None = None,
-    quiet: bool = False,
-    answer: Answer | None = None,
+    case: Case | RideCase, path: Path, speed: float | None = None, quiet: bool = False, answer: Answer | None = None
 ) -> None:
     """Write an H.264 video: of a turn whole turns, REPEATS times; of a ride its begin, in true time.
 
     speed: of a turn's video, 1 is the true one; by default that of slow_motion. answer: the design's two numbers, which
-    are written beside a turn. Raises MissingPartError as
-    require_video, InputError if the file cannot be written.
+    are written beside a turn. Raises MissingPartError as require_video, InputError if the file cannot be written.
     """
     require_video()
     if isinstance(case, RideCase):
@@ -80,7 +74,7 @@ def pictures(case: Case, steps: IntArray, speed: float, answer: Answer | None = 
     """The frames at these steps of the first turn, as render_video has them, shape (SIDE, SIDE + PLOT_WIDTH, 3)."""
     from fes_mj.viewing.panel import power_panel
 
-    run, panel = case.simulation, power_panel(case, answer, PLOT_WIDTH, SIDE)
+    run, panel = case.simulation, power_panel(case, answer)
     spec = build_mjcf(run.design, cadence=run.cadence, timestep=run.timestep, legs=len(run.legs))
     with stage(spec, run.design, speed, len(run.legs)) as scene:
         for step in steps:
@@ -152,7 +146,7 @@ def _ride_pictures(case: RideCase, steps: IntArray, end: float) -> Iterator[Pict
     """The frames at these steps of a ride that is shown until `end`, s; in true time."""
     from fes_mj.viewing.panel import ride_panel
 
-    run, panel = case.simulation, ride_panel(case, end, PLOT_WIDTH, SIDE)
+    run, panel = case.simulation, ride_panel(case, end)
     spec = build_road_mjcf(run.ride, run.timestep)
     _add_road(spec, run)
     radii = add_wheels(spec, run.ride.design)

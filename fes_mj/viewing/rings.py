@@ -19,6 +19,7 @@ from fes_mj.riding.stimulation import CORE, MUSCLES, Window
 from fes_mj.viewing.charts import svg_text
 
 _INNER, _RING = 0.35, 0.2  # radius of the first ring, distance of two
+_OUTER = _INNER + 3 * _RING
 
 
 def windows_figure(design: Design, windows: Sequence[Window]) -> Figure:
@@ -27,12 +28,9 @@ def windows_figure(design: Design, windows: Sequence[Window]) -> Figure:
     axes = clockwise(figure.add_subplot(projection="polar"))
     for window in (window for window in windows if window.leg == "right"):
         place = list(MUSCLES).index(window.muscle)
-        height = _INNER + _RING * place
         for (start, end), shade in ((window.works, 0.35), (window.core, 1.0)):
-            look = {"color": SERIES[place], "alpha": shade, "lw": 0, "zorder": 2}
-            axes.bar((start + end) / 2, 0.8 * _RING, width=end - start, bottom=height, **look)
-    mark_top_dead_centre(axes, design, _INNER + 3 * _RING)
-    axes.set(ylim=(0, _INNER + 3 * _RING), yticks=[], xticks=np.radians(np.arange(0, 360, 45)))
+            draw_window(axes, place, (start + end) / 2, end - start, alpha=shade, zorder=2)
+    finish_rings(axes, design)
     figure.suptitle(literal(f"{design.name}: where muscles drive the crank"), weight="bold", y=0.98)
     muscles = zip(MUSCLES.items(), SERIES, strict=True)
     labels = [
@@ -45,11 +43,18 @@ def windows_figure(design: Design, windows: Sequence[Window]) -> Figure:
     return figure
 
 
-def mark_top_dead_centre(axes: Any, design: Design, outer: float) -> None:
-    """A line from the middle to a radius where the leg is bent most."""
+def draw_window(axes: Any, place: int, middle: float, width: float, **look: Any) -> None:
+    """A window of crank angles, rad, in the ring of a muscle group, by its place."""
+    height = _INNER + _RING * place
+    axes.bar(middle, 0.8 * _RING, width=width, bottom=height, color=SERIES[place], lw=0, **look)
+
+
+def finish_rings(axes: Any, design: Design) -> None:
+    """Around the rings: angles, and a line where the leg is bent most."""
     top = turning(design).top_dead_centre
-    axes.plot([top, top], [0, outer], color=INK, lw=1, ls=(0, (4, 2)), zorder=3)
+    axes.plot([top, top], [0, _OUTER], color=INK, lw=1, ls=(0, (4, 2)), zorder=3)
     axes.text(top, 0.1, "TDC", ha="center", va="center", fontsize=8, color=INK, backgroundcolor="white", zorder=4)
+    axes.set(ylim=(0, _OUTER), yticks=[], xticks=np.radians(np.arange(0, 360, 45)))
 
 
 def starts_svg(starts: Starts) -> str:

@@ -18,7 +18,7 @@ from fes_mj.muscles.prior import ramp
 from fes_mj.muscles.setting import MISTIMED, Setting
 from fes_mj.muscles.settings import Settings
 from fes_mj.muscles.timing import ANGLES
-from fes_mj.viewing.rings import clockwise, mark_top_dead_centre
+from fes_mj.viewing.rings import clockwise, draw_window, finish_rings
 
 A4 = 11.69, 8.27  # inches, landscape
 _COLUMNS = (
@@ -26,7 +26,6 @@ _COLUMNS = (
     f"{MISTIMED:g} deg\nearly, W", f"{MISTIMED:g} deg\nlate, W",
 )  # fmt: skip
 _LONGEST = 40  # letters of a name
-_INNER, _RING = 0.35, 0.2
 
 
 def settings_figure(settings: Settings) -> Figure:
@@ -91,14 +90,12 @@ def _notes(settings: Settings) -> str:
 def _ring(axes: Any, setting: Setting) -> None:
     """Windows of the right leg, a ring a group; the left leg's, half a turn later, pale."""
     windows = setting.windows
-    for number, (group, colour) in enumerate(zip(GROUPS, SERIES, strict=True)):
+    for number, group in enumerate(GROUPS):
         on, width = (np.radians(values[number, 0, 0]) for values in (windows.on, windows.width))
         for leg, shade in zip(TWO_LEGS[: setting.legs], (1.0, 0.22), strict=False):
-            middle, height = on + width / 2 + leg.lag, _INNER + _RING * number
-            look = {"color": colour, "alpha": shade, "lw": 0, "label": group if shade == 1 else None}
-            axes.bar(middle, 0.8 * _RING, width=width, bottom=height, **look)
-    mark_top_dead_centre(axes, setting.design, _INNER + 3 * _RING)
-    axes.set(ylim=(0, _INNER + 3 * _RING), yticks=[], xticks=np.radians(np.arange(0, 360, 45)))
+            label = group if shade == 1 else None
+            draw_window(axes, number, on + width / 2 + leg.lag, width, alpha=shade, label=label)
+    finish_rings(axes, setting.design)
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.08), ncols=3)
 
 
@@ -165,15 +162,8 @@ def _powers(axes: Axes, settings: Settings) -> None:
     """Power of the legs by cadence, over the riders; the main cadence marked."""
     rpm = np.array([setting.cadence / RPM for setting in settings.by_cadence])
     powers = np.array([setting.legs * setting.power.sum(axis=0) for setting in settings.by_cadence])
-    low, high = np.quantile(powers, (0.05, 0.95), axis=1)
-    axes.errorbar(
-        rpm,
-        powers.mean(axis=1),
-        (powers.mean(axis=1) - low, high - powers.mean(axis=1)),
-        fmt="o-",
-        ms=4,
-        color=SERIES[0],
-    )
+    mean, (low, high) = powers.mean(axis=1), np.quantile(powers, (0.05, 0.95), axis=1)
+    axes.errorbar(rpm, mean, (mean - low, high - mean), fmt="o-", ms=4, color=SERIES[0])
     axes.axvline(settings.main.cadence / RPM, color=INK, lw=0.8, ls=(0, (4, 2)))
     axes.set(xlabel="cadence, rpm", ylabel="W", ylim=(min(0, float(low.min())), None))
     axes.set_title(f"power of {_legs(settings.main)}, 5 to 95 %", size=9, loc="left")

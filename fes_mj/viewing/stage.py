@@ -19,6 +19,7 @@ from fes_mj.linkage.shapes import PARTS, bars
 from fes_mj.simulation.appearance import Spec
 
 SIDE = 720  # pixels; pictures are square
+PLOT_WIDTH = 560  # pixels, of the curves beside them
 # Drawn so many times as large and reduced, without MuJoCo's own smoothing of edges, which takes longer.
 _FINER = 2
 # Seen from the rider's right, a little from above: the rider faces right, the crank turns clockwise.

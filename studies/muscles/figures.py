@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fes_mj.common.style import BY_DESIGN, FAINT, INK, SERIES
-from fes_mj.linkage.design_file import DESIGNS, load_design
+from fes_mj.linkage.design_file import DESIGNS, SIX_BARS, load_design
 from fes_mj.muscles.anatomy import GROUPS
 from fes_mj.muscles.by_angle import Gains
 from fes_mj.muscles.fatigue import recoveries
@@ -20,7 +20,7 @@ from fes_mj.muscles.riders import load_riders
 from fes_mj.muscles.setting import Setting
 from fes_mj.muscles.timing import ANGLES
 from fes_mj.viewing.charts import write_figure
-from studies.muscles.gains import MEASURED_W, SIX_BARS, WIDTHS, known_gains, paper_gains
+from studies.muscles.gains import MEASURED_W, WIDTHS, known_gains, paper_gains
 from studies.muscles.use import MINUTES, tired
 
 NAMES = [name.upper() for name in SIX_BARS]

@@ -10,7 +10,7 @@ import numpy as np
 from fes_mj.common.arrays import FloatArray
 from fes_mj.common.units import RPM, turns_per_second
 from fes_mj.linkage import kinematics
-from fes_mj.linkage.design_file import DESIGNS, load_design
+from fes_mj.linkage.design_file import DESIGNS, SIX_BARS, load_design
 from fes_mj.moments.joint_moments import GROUPS as RIDER_GROUPS
 from fes_mj.muscles.anatomy import GROUPS, Anatomy
 from fes_mj.muscles.by_angle import Gains, null_test
@@ -23,7 +23,6 @@ from fes_mj.muscles.timing import ANGLES, DUTY, activation, best_windows
 from fes_mj.muscles.trial import ENDS
 from fes_mj.paper.evidence import load_evidence, of_group
 
-SIX_BARS = ("r1", "r2", "d1", "d2")
 KNOWN = 400  # riders of the prior in the null test
 WIDTHS = (70, 100, 130)  # deg
 MEASURED_W = (8, 35)  # both legs, of FES cycling (Szecsi 2014, doi:10.1186/1743-0003-11-123)

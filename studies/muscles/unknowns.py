@@ -11,7 +11,7 @@ import numpy as np
 from fes_mj.common.arrays import FloatArray
 from fes_mj.common.units import RPM
 from fes_mj.linkage import kinematics
-from fes_mj.linkage.design_file import load_design
+from fes_mj.linkage.design_file import SIX_BARS, load_design
 from fes_mj.moments.joint_moments import GROUPS as RIDER_GROUPS
 from fes_mj.muscles.anatomy import Anatomy
 from fes_mj.muscles.power import best_turn
@@ -20,7 +20,7 @@ from fes_mj.muscles.pull import pull
 from fes_mj.muscles.riders import Riders, load_riders
 from fes_mj.muscles.timing import ANGLES, activation, best_windows
 from fes_mj.muscles.trial import quantities
-from studies.muscles.gains import SIX_BARS, probability, quantiles
+from studies.muscles.gains import probability, quantiles
 
 # Quantities that a rider can be given another value of without ceasing to fit the measured power badly.
 CHANGED = (

@@ -9,10 +9,11 @@ import pytest
 import fes_mj
 from fes_mj.budget.unknowns import MASSES, Realisations, priors, realisations
 from fes_mj.linkage.assembly import joint_ranges
+from fes_mj.linkage.design_file import SIX_BARS
 from fes_mj.linkage.variables import LENGTHS, component, replaced
 from fes_mj.moments.files import sampled_coefficients
 from fes_mj.paper.identification import LENGTH_ROUNDING
-from fes_mj.paper.printed import SIX_BARS, table1
+from fes_mj.paper.printed import table1
 from tests.linkage.test_design_file import written
 
 COUNT = 1000

@@ -148,8 +148,8 @@ def test_muscles_of_a_trial_drive_a_design(
     capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """From the trial to static, with as few riders as make a file."""
-    monkeypatch.setattr("fes_mj.cli.muscle_fit._CANDIDATES", 200)
-    monkeypatch.setattr("fes_mj.cli.muscle_fit._STEPS", 1)
+    monkeypatch.setattr("fes_mj.cli.moments._CANDIDATES", 200)
+    monkeypatch.setattr("fes_mj.cli.moments._STEPS", 1)
     riders = tmp_path / "rider.npz"
     code, content = answer(capsys, "moments", str(TRIAL), "--fit-muscles", "-o", str(riders))
     assert code == 0

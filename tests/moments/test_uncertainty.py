@@ -7,12 +7,12 @@ import pytest
 
 import fes_mj
 from fes_mj.linkage import kinematics
+from fes_mj.linkage.design_file import SIX_BARS
 from fes_mj.linkage.variables import lengths, replaced, with_lengths
 from fes_mj.moments.fourier import fourier
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.moments.uncertainty import instant_power_weights, power_weights
-from fes_mj.paper.printed import SIX_BARS
 from fes_mj.statics.turn import difference_sd, quasi_static, ratio_sd
 
 _ANGLE = np.radians(np.arange(0.0, 360.0))

@@ -8,7 +8,6 @@ from fes_mj.optimization.problem import Problem
 from fes_mj.statics.cycles import joint_speeds
 from fes_mj.statics.work_table import WorkTable
 
-SIX_BARS = ("r1", "r2", "d1", "d2")
 TABLE = WorkTable.of(fes_mj.load_moments("p1p2"))
 
 

@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 
 import fes_mj
+from fes_mj.linkage.design_file import SIX_BARS
 from fes_mj.optimization.evenness import RippleLimit, fluctuation
 from fes_mj.optimization.optimize import run_searches
 from fes_mj.riding.ride import Ride, balancing_slope, steady_ripple
 from fes_mj.riding.trace import ride
 from fes_mj.statics.turn import quasi_static
-from tests.optimization.conftest import SIX_BARS, problem_of
+from tests.optimization.conftest import problem_of
 
 MOMENTS = fes_mj.load_moments("p1p2")
 LIMIT = RippleLimit(0.08, MOMENTS)

@@ -10,12 +10,13 @@ import fes_mj
 from fes_mj.fit.search import best_seats
 from fes_mj.fit.seat import fit_seat
 from fes_mj.fit.seats import SEAT_LIMITS
+from fes_mj.linkage.design_file import SIX_BARS
 from fes_mj.linkage.riders import populations
 from fes_mj.optimization.optimize import run_searches
 from fes_mj.optimization.people import ONE_RIDER, STATISTICS, sampled
 from fes_mj.optimization.problem import LENGTH_COUNT, Problem
 from fes_mj.optimization.search import Search, feasible_start
-from tests.optimization.conftest import SIX_BARS, TABLE, problem_of
+from tests.optimization.conftest import TABLE, problem_of
 
 MOMENTS = fes_mj.load_moments("p1p2")
 

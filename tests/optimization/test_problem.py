@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 import fes_mj
-from fes_mj.linkage.design_file import design_toml
+from fes_mj.linkage.design_file import SIX_BARS, design_toml
 from fes_mj.linkage.turning import turning
 from fes_mj.linkage.variables import crank_speed
 from fes_mj.optimization.optimize import run_searches
 from fes_mj.optimization.problem import LENGTH_COUNT, Problem
 from fes_mj.statics.cycles import joint_speeds
-from tests.optimization.conftest import SIX_BARS, TABLE, problem_of
+from tests.optimization.conftest import TABLE, problem_of
 
 
 def population(problem: Problem, count: int = 2000, seed: int = 0, step: float = 0.02) -> np.ndarray:

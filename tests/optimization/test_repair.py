@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 import fes_mj
+from fes_mj.linkage.design_file import SIX_BARS
 from fes_mj.optimization.repair import changes, repaired
-from tests.optimization.conftest import SIX_BARS, problem_of
+from tests.optimization.conftest import problem_of
 
 
 @pytest.mark.parametrize("name", SIX_BARS)

@@ -7,11 +7,12 @@ import numpy as np
 import pytest
 
 import fes_mj
+from fes_mj.linkage.design_file import SIX_BARS
 from fes_mj.optimization.optimize import run_searches
 from fes_mj.optimization.problem import make_problem
 from fes_mj.optimization.search import STEP, BudgetSpentError, Search, differential, feasible_start, random_pursuit
 from fes_mj.statics.turn import quasi_static
-from tests.optimization.conftest import SIX_BARS, problem_of
+from tests.optimization.conftest import problem_of
 
 
 def test_random_starts_are_feasible_and_different() -> None:

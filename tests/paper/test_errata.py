@@ -17,11 +17,12 @@ from numpy.typing import NDArray
 import fes_mj
 from fes_mj.linkage import kinematics
 from fes_mj.linkage.assembly import grashof_margin, joint_ranges
+from fes_mj.linkage.design_file import SIX_BARS
 from fes_mj.linkage.joints import PerJoint
 from fes_mj.linkage.turning import turning
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.paper.identification import identify
-from fes_mj.paper.printed import SIX_BARS, table1
+from fes_mj.paper.printed import table1
 from fes_mj.statics.equilibrium import crank_moment, equilibrium, virtual_work
 
 _TURN = np.radians(np.arange(3.0, 363.0, 5.0))

@@ -11,11 +11,10 @@ import fes_mj
 from fes_mj.budget.budget import Spread, together, unknowns
 from fes_mj.budget.power import UncertainPower
 from fes_mj.budget.unknowns import priors
-from fes_mj.linkage.design_file import DESIGNS
+from fes_mj.linkage.design_file import DESIGNS, SIX_BARS
 from fes_mj.moments.joint_moments import GROUPS
 from fes_mj.moments.uncertainty import with_sd
 from fes_mj.paper.error_budget import DRAWS, GAINS, TIMES
-from fes_mj.paper.printed import SIX_BARS
 from fes_mj.statics.turn import quasi_static
 
 PAGE = json.loads((Path(__file__).parents[2] / "results" / "reproduction.json").read_text(encoding="utf-8"))[

@@ -5,9 +5,9 @@ import math
 import pytest
 
 from fes_mj import load_design
-from fes_mj.linkage.design_file import DESIGNS
+from fes_mj.linkage.design_file import DESIGNS, SIX_BARS
 from fes_mj.paper.identification import identify, range_misfit, ranges_table
-from fes_mj.paper.printed import SIX_BARS, table1
+from fes_mj.paper.printed import table1
 
 
 def test_the_shipped_catalogue_is_the_output_of_the_identification() -> None:
