@@ -24,10 +24,10 @@ DIGITS = 4  # of N m, in every file; coefficients of high harmonics become 0 and
 
 def main() -> None:
     evidence = load_evidence()
-    recovered = reconstruct(evidence)
-    print(f"length {recovered.hyperparameters.length:g}, amplitude {recovered.hyperparameters.amplitude:g} N m")
-    for group in recovered.posteriors:
-        curves, share = allowed_curves(of_group(evidence, group), group, recovered.hyperparameters, CURVES)
+    chosen, posteriors = reconstruct(evidence)
+    print(f"length {chosen.length:g}, amplitude {chosen.amplitude:g} N m")
+    for group in posteriors:
+        curves, share = allowed_curves(of_group(evidence, group), group, chosen, CURVES)
         print(f"{group}: {100 * share:.2f} % of the curves fulfil what the text says of the figures")
         write(curves.round(DIGITS), FOLDER / f"{group}.csv")
 

@@ -37,17 +37,12 @@ def _published(options: PrintOptions) -> None:
 def _print_rows(records: list[dict[str, Any]], rule: str, verdicts: dict[str, int]) -> None:
     columns = ("measured", "predicted by", "predicted, 5 to 95 %", "measured", "verdict")
     for kind, title in (("measurement", "Measurements"), ("model", "Models of others: consistency, not validation")):
-        cells = [
-            (
-                record["name"],
-                f"{record['drive']}; {record['timing']}",
-                _quantiles(record["predicted"]),
-                f"{span(record['measured'])} {record['unit'].replace('1', '')}".rstrip(),
-                record["verdict"],
-            )
-            for record in records
-            if record["kind"] == kind
-        ]
+        cells = []
+        for record in (record for record in records if record["kind"] == kind):
+            by, measured = f"{record['drive']}; {record['timing']}", span(record["measured"])
+            if record["unit"] != "1":
+                measured += f" {record['unit']}"
+            cells.append((record["name"], by, _quantiles(record["predicted"]), measured, record["verdict"]))
         print_table(title, columns, cells)
     for record in records:
         if record["unless"]:

@@ -75,11 +75,9 @@ def simulate(
     checks = case.checks if case.bearings else [*verify(one_leg, quick_groups(options.legs))]
     agrees = all(check.ok for check in checks)
     numbers = Answered(drive, options, case.statics)
-    content = (
-        _content(case, numbers.answer, checks, provenance([design_path(design, options.dims), *inputs[1:]]))
-        if paths or options.json
-        else {}
-    )
+    content: dict[str, Any] = {}
+    if paths or options.json:
+        content = _content(case, numbers.answer, checks, provenance([design_path(design, options.dims), *inputs[1:]]))
     if paths:
         write_results(dict(zip(paths, (json_text(content), *_texts(case)), strict=True)))
     options.show(lambda: content, lambda: _print(case, numbers.answer, checks, options.verbose))

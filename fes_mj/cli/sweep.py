@@ -136,14 +136,10 @@ def _print_top(rows: Sequence[dict[str, Any]], study: Study) -> None:
     """The best points, with what varies among all."""
     columns = {"point": "point"} | {axis: label(axis) for axis in study.varied}
     columns |= {"power_mean_W": "power, W", "power_sd_W": "+-, W", "power_mode_W": "most probable rider, W"}
-    columns |= {"simulated_power_mean_W": "simulated, W"}
-    columns |= {"extrapolated_share": "extrapolated, %"}
+    columns |= {"simulated_power_mean_W": "simulated, W", "extrapolated_share": "extrapolated, %"}
     shown = {name: heading for name, heading in columns.items() if any(row.get(name) is not None for row in rows)}
-    print_table(
-        "Points with the most mean crank power",
-        [*shown.values()],
-        [[_cell(name, row[name]) for name in shown] for row in rows],
-    )
+    cells = [[_cell(name, row[name]) for name in shown] for row in rows]
+    print_table("Points with the most mean crank power", [*shown.values()], cells)
 
 
 def _cell(name: str, value: Any) -> str:

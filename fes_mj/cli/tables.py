@@ -129,15 +129,10 @@ def print_notes(result: DrivenTurn, of: str = "") -> None:
 def print_checks(title: str, checks: Sequence[Check]) -> None:
     """Print name, value, limit and verdict of checks; nothing is green where one fails."""
     good = verdict(True) if all(check.ok for check in checks) else "ok"
-    rows: list[tuple[str | Text, ...]] = [
-        (
-            check.name,
-            number(check.value, check.unit),
-            number(check.limit, check.unit),
-            good if check.ok else verdict(False),
-        )
-        for check in checks
-    ]
+    rows: list[tuple[str | Text, ...]] = []
+    for check in checks:
+        value, limit = (number(size, check.unit) for size in (check.value, check.limit))
+        rows.append((check.name, value, limit, good if check.ok else verdict(False)))
     print_table(title, ("check", "value", "limit", "verdict"), rows)
 
 

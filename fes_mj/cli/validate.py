@@ -17,6 +17,7 @@ from fes_mj.common.checks import Check, definitions
 from fes_mj.common.console import conclude, print_table, say, track
 from fes_mj.common.errors import InputError
 from fes_mj.common.provenance import provenance
+from fes_mj.common.units import RPM
 from fes_mj.common.writing import require_writable, write_text
 from fes_mj.linkage.design_file import DESIGNS
 from fes_mj.viewing.pages import require_page_packages
@@ -165,19 +166,12 @@ def _print(
 
 def _print_runs(cases: list[VerificationCase]) -> None:
     """Mean powers, and what the discretisation makes uncertain about them."""
-    rows = [
-        (
-            case.name,
-            f"{row['cadence_rpm']:.1f}",
-            f"{1e3 * row['timestep_s']:.3f}",
-            f"{row['static_power_mean_W']:.3f}",
-            f"{row['power_mean_W']:.3f}",
-            f"{row['numerical_uncertainty_W']:.4f}" if case.refined else "not refined",
-            case.difference_text,
-        )
-        for case in cases
-        for row in (case.row(),)
-    ]
+    rows = []
+    for case in cases:
+        run, uncertainty = case.simulation, f"{case.uncertainty:.4f}" if case.refined else "not refined"
+        numbers = (f"{case.cadence / RPM:.1f}", f"{1e3 * run.timestep:.3f}")
+        powers = (f"{power:.3f}" for power in (case.static_power_mean, run.power_mean))
+        rows.append((case.name, *numbers, *powers, uncertainty, case.difference_text))
     columns = ("run", "rpm", "step, ms", "static, W", "dynamic, W", "numerical uncertainty, W", "difference")
     print_table("Mean crank power of one leg", columns, rows)
 

@@ -128,15 +128,11 @@ class System(NamedTuple):
         return float(follows @ self.values[kept]), float(np.sqrt(total[row, row] - follows @ total[kept, row]))
 
 
-class Reconstruction(NamedTuple):
-    """Hyperparameters of both groups together, and the posterior of each."""
+def reconstruct(evidence: list[Evidence]) -> tuple[Hyperparameters, dict[str, Posterior]]:
+    """Recover the moments: hyperparameters of both groups together, and the posterior of each.
 
-    hyperparameters: Hyperparameters
-    posteriors: dict[str, Posterior]
-
-
-def reconstruct(evidence: list[Evidence]) -> Reconstruction:
-    """Recover the moments of every group. Raises InputError naming the evidence that contradicts the rest."""
+    Raises InputError naming the evidence that contradicts the rest.
+    """
     chosen = choose_hyperparameters(evidence)
     misses: dict[str, float] = {}
     for group in GROUPS:
@@ -148,8 +144,7 @@ def reconstruct(evidence: list[Evidence]) -> Reconstruction:
             f"evidence {name!r} contradicts the rest: it lies {abs(miss):.1f} standard deviations from what the other "
             f"rows predict, {LARGEST_MISS:g} is allowed; correct its value, or give it the error it has"
         )
-    posteriors = {group: condition(of_group(evidence, group), chosen) for group in GROUPS}
-    return Reconstruction(chosen, posteriors)
+    return chosen, {group: condition(of_group(evidence, group), chosen) for group in GROUPS}
 
 
 def left_out_misses(rows: list[Evidence], hyperparameters: Hyperparameters) -> FloatArray:

@@ -25,7 +25,7 @@ from fes_mj.paper.statements import allowed_curves
 
 @pytest.fixture(scope="module")
 def posteriors() -> dict[str, Posterior]:
-    return reconstruct(load_evidence()).posteriors
+    return reconstruct(load_evidence())[1]
 
 
 @pytest.fixture(scope="module")
