@@ -16,7 +16,7 @@ from fes_mj.statics.sizes import Build
 
 SCALES = (1.0, 0.5, 0.2, 0.1, 0.05, 0.02)  # ISO 5455
 LINE = 1.8 * TEXT  # mm from a line of text to the next
-FIXED_POINTS = {"hip", "rocker_pivot", "crank_centre"}
+FIXED_POINTS = ("crank_centre", "hip", "rocker_pivot")
 
 
 class Box(NamedTuple):
@@ -62,7 +62,7 @@ def mechanism(pen: Pen, build: Build, gaps: Sequence[Gap], box: Box) -> None:
     returning = {"knee"} | ({"pedal"} if build.design.linkage.architecture.pedal_body == "rocker" else set())
     for name, path in paths.items():
         own.line(_one_way(path) if name in returning else path, "PATH", close=name not in returning)
-    crosses = [seen(complex(points[joint].value)) for joint in FIXED_POINTS & points.keys()]
+    crosses = [seen(complex(points[joint].value)) for joint in FIXED_POINTS if joint in points]
     for cross in crosses:
         own.cross(cross, 4.0)
     ends = [[*map(seen, gap.ends)] for gap in gaps]

@@ -81,7 +81,7 @@ def _tables(build: Build, gaps: Sequence[Gap]) -> list[str]:
     """Clearances, how the layers lie, where the pivots are."""
     stack, points = build.stack, build.stack.side.motion.points
     layers = sorted(stack.layers, key=lambda body: stack.layers[body])
-    pivots = {name: 1e3 * complex(points[name].value) for name in FIXED_POINTS & points.keys() - {"hip"}}
+    pivots = {name: 1e3 * complex(points[name].value) for name in FIXED_POINTS if name in points and name != "hip"}
     return [
         f"CLEARANCES, seen from the side, over the whole turn of both legs, mm (wanted: {1e3 * CLEARANCE:g})",
         *(
@@ -95,7 +95,7 @@ def _tables(build: Build, gaps: Sequence[Gap]) -> list[str]:
         f"leg: {1e3 * stack.level('shank'):.1f}, between the middles of the feet {1e3 * stack.feet:.0f}",
         "",
         "ON THE FRAME, from the hip, mm forwards and up",
-        *(f"{name.replace('_', ' ')}: {-place.real:.1f}, {place.imag:.1f}" for name, place in sorted(pivots.items())),
+        *(f"{name.replace('_', ' ')}: {-place.real:.1f}, {place.imag:.1f}" for name, place in pivots.items()),
     ]
 
 
