@@ -54,11 +54,8 @@ def prepare() -> None:
     if sys.platform != "win32":  # whose console takes text, not bytes
         sys.stdout, sys.stderr = _stream(1, sys.stdout, "standard output"), _stream(2, sys.stderr)
     sys.unraisablehook = _unraisable
-    for name, default in (
-        ("SIGINT", signal.default_int_handler),
-        ("SIGTERM", signal.SIG_DFL),
-        ("SIGHUP", signal.SIG_DFL),
-    ):
+    usual = {"SIGINT": signal.default_int_handler, "SIGTERM": signal.SIG_DFL, "SIGHUP": signal.SIG_DFL}
+    for name, default in usual.items():
         kind = getattr(signal, name, None)
         if kind and signal.getsignal(kind) is default:  # `nohup` ignores one
             signal.signal(kind, _interrupt)

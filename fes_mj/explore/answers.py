@@ -3,6 +3,7 @@
 import json
 from collections.abc import Callable, Mapping
 from functools import partial
+from operator import call
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,7 @@ from fes_mj.explore.numbers import by_muscles, numbers, require_muscles
 from fes_mj.explore.pose import plane
 from fes_mj.explore.runs import BY_MUSCLES, RUNS
 from fes_mj.explore.turn import turn
-from fes_mj.explore.uploads import Uploads, here, moments_of_bundle, read_upload
+from fes_mj.explore.uploads import Uploads, moments_of_bundle, read_upload
 from fes_mj.linkage.design import ARCHITECTURES, BRANCHES, SEXES, Design
 from fes_mj.linkage.design_file import DESIGNS, design_toml, load_design
 from fes_mj.linkage.legs import LEGS
@@ -46,7 +47,7 @@ class Answers:
         self.design, self.chosen, self.drive = design, moments.name, drive
         self.shared = {group: load_moments(group) for group in GROUPS} | {moments.name: moments}
         self.uploads = Uploads()
-        self.reader: Callable[..., Any] = here  # a server's is elsewhere
+        self.reader: Callable[..., Any] = call  # a server's reads elsewhere
         names = ("start", "turn", "making", "numbers", "change", "save", "model", "open-design", "open-moments")
         self.by_name: dict[str, Callable[[Section], Answer]] = {
             name: getattr(self, name.replace("-", "_")) for name in names

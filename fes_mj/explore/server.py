@@ -87,7 +87,7 @@ def application(answers: Answers, token: str, hosts: set[str] | None) -> Starlet
 
 
 def _apart(load: Callable[[Path], Any], path: Path) -> Any:
-    """As uploads.here, in a process of its own that may take READING s: for the threads of questions."""
+    """What `load` gives, from a process of its own that may take READING s: for the threads of questions."""
 
     async def loaded() -> Any:
         with anyio.fail_after(READING):

@@ -3,6 +3,7 @@
 import time
 from collections.abc import Callable, Collection
 from dataclasses import replace
+from operator import call
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from threading import Lock
@@ -47,16 +48,11 @@ class Uploads:
         return name
 
 
-def here(load: Callable[[Path], Loaded], path: Path) -> Loaded:
-    """Read a file at once."""
-    return load(path)
-
-
-def read_upload(question: Section, load: Callable[[Path], Loaded], reader: Callable[..., Loaded] = here) -> Loaded:
+def read_upload(question: Section, load: Callable[[Path], Loaded], reader: Callable[..., Loaded] = call) -> Loaded:
     """What the file in a question holds: its "name", its "text" and, by name, the texts of the files "beside" it.
 
-    They are read as files of this machine are, from a folder that holds nothing else; reader: as `here`. Raises
-    InputError as `load`, and for a name that is not a file's own.
+    They are read as files of this machine are, from a folder that holds nothing else, by reader(load, path).
+    Raises InputError as `load`, and for a name that is not a file's own.
     """
     name = question.value("name", None, _is_name, "the name of a file, without a folder")
     text = question.value("text", None, is_text, "the text of the file")

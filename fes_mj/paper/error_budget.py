@@ -35,14 +35,13 @@ Budgets = dict[tuple[str, str], Drawn]
 
 def draw_all(static: dict[tuple[str, str], QuasiStatic], silent: bool) -> Budgets:
     """By design and group, on the same draws of whatever designs share. Raises MissingPartError without SALib."""
-    return {key: _drawn(static[key]) for key in track([*static], "error budgets", silent)}
-
-
-def _drawn(result: QuasiStatic) -> Drawn:
-    budget, uncertain = error_budget(result, draws=DRAWS), UncertainPower(result, DRAWS)
-    assert budget is not None
-    powers = uncertain.at(together(unknowns(), DRAWS, TIMES))
-    return Drawn(budget, powers, shares(uncertain.at, unknowns(), DRAWS))
+    budgets = {}
+    for key in track([*static], "error budgets", silent):
+        budget, uncertain = error_budget(static[key], draws=DRAWS), UncertainPower(static[key], DRAWS)
+        assert budget is not None
+        powers = uncertain.at(together(unknowns(), DRAWS, TIMES))
+        budgets[key] = Drawn(budget, powers, shares(uncertain.at, unknowns(), DRAWS))
+    return budgets
 
 
 @table("priors")

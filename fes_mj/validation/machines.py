@@ -28,13 +28,13 @@ def _joint_power(riders: Riders, setup: Setup) -> PerJoint[tuple[FloatArray, Flo
     leg, cadence = setup["leg_m"], setup["cadence_rpm"][0] * RPM
     theirs = load_riders(setup["windows_of"]).taken(slice(len(riders)))
     design = TRICYCLE.with_rider(thigh=leg, shank=leg)
-    motion, rate = kinematics.solve(design, ANGLES), kinematics.solve(design, ANGLES).joint_rate
+    motion = kinematics.solve(design, ANGLES)
     turn = muscle_turn(riders, design, cadence, trial_windows(theirs, design))
     passive = passive_moments(riders.flexion(motion))
 
     def of_joint(joint: str) -> tuple[FloatArray, FloatArray]:
         moment = (turn.moment[joint] + passive[joint])[:, 0]
-        return moment, cadence * moment * rate[joint]
+        return moment, cadence * moment * motion.joint_rate[joint]
 
     return PerJoint.of(of_joint)
 

@@ -4,7 +4,7 @@ The steps are methods of crosscheck.pipeline.Pipeline. A fault replaces one of t
 nothing else is touched, so nothing has to be put back.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from typing import Any, NamedTuple, TypeAlias
@@ -12,6 +12,7 @@ from typing import Any, NamedTuple, TypeAlias
 from fes_mj.common.checks import Check, definitions
 from fes_mj.common.errors import InputError
 from fes_mj.linkage.design import Design
+from fes_mj.linkage.variables import ALL
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.verification.case import VerificationCase
 from fes_mj.verification.suite import FULL, QUICK, CheckGroup, refinement_checks, ride_checks, two_leg_checks, verify
@@ -29,11 +30,11 @@ class Fault(NamedTuple):
 
     name: str
     mistake: str
-    guards: tuple[str, ...]
+    guards: Sequence[str]
     steps: Mapping[str, Any] = {}
     ride_steps: Mapping[str, Any] = {}
     edit: Callable[[Design], Design] | None = None
-    kinds: tuple[str, ...] = ("trt", "crt", "cdt")
+    kinds: Sequence[str] = ALL
     drive: str = ""
     legs: int = 1
 

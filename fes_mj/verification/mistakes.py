@@ -22,7 +22,6 @@ from fes_mj.linkage.design import BODIES, Design
 from fes_mj.linkage.joints import PerJoint
 from fes_mj.linkage.kinematics import Jet, Motion, Rotation
 from fes_mj.linkage.legs import TWO_LEGS
-from fes_mj.linkage.variables import ALL
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.moments.torque_map import GRID, TorqueMap
@@ -276,14 +275,10 @@ def faults() -> tuple[Fault, ...]:
     return tuple(
         Fault(
             name,
-            row["mistake"],
-            tuple(row["guards"]),
+            **row,
             steps=STEPS.get(name) or MUSCLE_STEPS.get(name, {}),
             ride_steps=RIDE_STEPS.get(name, {}),
             edit=EDITS.get(name),
-            kinds=tuple(row.get("kinds", ALL)),
-            drive=row.get("drive", ""),
-            legs=row.get("legs", 1),
         )
         for name, row in rows.items()
     )
