@@ -85,12 +85,12 @@ def test_the_quick_way_to_leave_rows_out_is_the_long_one() -> None:
 
 def test_a_row_left_out_is_predicted_less_surely() -> None:
     evidence = load_evidence()
-    recovered = reconstruct(evidence)
+    chosen, posteriors = reconstruct(evidence)
     for row in evidence:
         weights = functional(row)
         others = [other for other in evidence if other.group == row.group and other is not row]
-        _, fitted = recovered.posteriors[row.group].predict(weights)
-        _, left_out = condition(others, recovered.hyperparameters).predict(weights)
+        _, fitted = posteriors[row.group].predict(weights)
+        _, left_out = condition(others, chosen).predict(weights)
         assert left_out >= fitted, row.name
 
 
