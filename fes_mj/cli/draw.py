@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias
 
 import numpy as np
 from cyclopts import Parameter
@@ -21,13 +21,15 @@ from fes_mj.statics.turn import quasi_static
 if TYPE_CHECKING:
     from fes_mj.statics.sizes import Build
 
+Material: TypeAlias = Literal["aluminium", "steel", "stainless"]  # those of statics.materials
+
 
 def draw(
     design: DesignName,
     /,
     *,
     out: Out,
-    material: str = "aluminium",
+    material: Material = "aluminium",
     safety: Annotated[float, Parameter(validator=Number(gte=1, lte=20))] = 2.0,
     step: Flag = False,
     rounded: Flag = False,
@@ -45,7 +47,7 @@ def draw(
 
     Args:
         out: The folder; it is made if its parent exists.
-        material: Of the links: aluminium, steel or stainless.
+        material: Of the links.
         safety: Factor against yielding and buckling.
         step: Also links/LINK.step, solid bodies; needs the extra `step`.
         rounded: Draw the design with its lengths rounded to 0.5 mm.

@@ -11,7 +11,7 @@ from fes_mj.linkage.design import Design
 from fes_mj.linkage.design_file import DESIGNS, design_path, load_design
 from fes_mj.muscles.drive import Muscles
 from fes_mj.muscles.riders import Riders, load_riders
-from fes_mj.muscles.timing import DUTY
+from fes_mj.muscles.timing import DUTIES, DUTY, is_duty
 from fes_mj.statics.drive import Drive, driven_speed
 from fes_mj.statics.muscle_static import MuscleStatic
 
@@ -30,6 +30,11 @@ class Driven(NamedTuple):
 _MUSCLES = Group("Muscles", validator=needs("--drive", "muscles"))
 
 
+def _share(_: object, duty: float) -> None:
+    if not is_duty(duty):
+        raise ValueError(f"It must be {DUTIES}.")
+
+
 @Parameter(name="*", group=_MUSCLES)
 @dataclass
 class DriveOptions:
@@ -45,7 +50,7 @@ class DriveOptions:
 
     drive: Annotated[Literal["moments", "muscles"], Parameter(group=(_MUSCLES, DRIVEN_BY))] = "moments"
     timing: Literal["best", "measured", "by-angle", "stimulation-by-angle"] = "best"
-    duty: Annotated[float, Parameter(show_default=lambda share: f"{360 * share:.0f}/360")] = DUTY
+    duty: Annotated[float, Parameter(validator=_share, show_default=lambda share: f"{360 * share:.0f}/360")] = DUTY
     muscles: Annotated[Path | None, Parameter(group=(_MUSCLES, WHOSE, DRIVEN_BY))] = None
 
     def inputs(self, options: MomentsOptions, *designs: str) -> list[Path]:

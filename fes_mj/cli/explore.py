@@ -6,10 +6,15 @@ from cyclopts import Parameter
 from cyclopts.validators import Number
 
 from fes_mj.cli.options import DRIVEN_BY, DesignName, Flag, MomentsOptions
-from fes_mj.common.errors import InputError, require_extra
+from fes_mj.common.errors import require_extra
 from fes_mj.linkage.design_file import load_design
 
 PORT, THIS_MACHINE = 8026, "127.0.0.1"
+
+
+def _named(_: object, host: str) -> None:
+    if not host:  # which would be all addresses
+        raise ValueError("It must be a name or an address of this machine.")
 
 
 def explore(
@@ -18,7 +23,7 @@ def explore(
     *,
     options: MomentsOptions = MomentsOptions(),
     port: Annotated[int, Parameter(validator=Number(gte=0, lte=65535))] = PORT,
-    host: str = THIS_MACHINE,
+    host: Annotated[str, Parameter(validator=_named)] = THIS_MACHINE,
     browser: bool = True,
     drive: Annotated[Literal["moments", "muscles"], Parameter(group=("Parameters", DRIVEN_BY))] = "moments",
     debug: Flag = False,
@@ -32,8 +37,6 @@ def explore(
         drive: What drives at first: joint moments, or stimulated muscles with the best timing.
         debug: Print where an answer failed, if that was not expected.
     """
-    if not host:  # which would be all addresses
-        raise InputError(f"--host is {host!r}; it must be a name or an address of this machine")
     loaded, moments = load_design(design), options.load_moments()
     require_extra("explore", "starlette", "uvicorn")
     from fes_mj.explore.answers import Answers

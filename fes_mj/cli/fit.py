@@ -44,8 +44,20 @@ from fes_mj.muscles.riders import load_riders
 _OF_RIDER, _OF_SEAT = Group("Rider"), Group("Seat")
 _LEG = Group("legs, thigh and shank", show=False, validator=all_or_none)
 _WHO = Group("a rider, one of", show=False, validator=mutually_exclusive)
-_Metres = Annotated[tuple[float, float], Parameter(group=_OF_SEAT, negative="", validator=Number(gte=-1, lte=1))]
-_Degrees = Annotated[tuple[float, float], Parameter(group=_OF_SEAT, negative="", validator=Number(gte=-90, lte=90))]
+_PEOPLE = Group("people", show=False, validator=needs("--sex", "male", "female"))
+
+
+def _ascending(_: object, ends: tuple[float, float]) -> None:
+    if ends[0] > ends[1]:
+        raise ValueError("An empty range; give the smaller number first.")
+
+
+def _range(low: float, high: float) -> Parameter:
+    return Parameter(group=_OF_SEAT, negative="", validator=(Number(gte=low, lte=high), _ascending))
+
+
+_Metres = Annotated[tuple[float, float], _range(-1, 1)]
+_Degrees = Annotated[tuple[float, float], _range(-90, 90)]
 
 
 @Parameter(name="*")
@@ -64,18 +76,20 @@ class RiderOptions:
 
     thigh: Annotated[float | None, Parameter(group=(_OF_RIDER, _LEG, _WHO), validator=bounds("thigh"))] = None
     shank: Annotated[float | None, Parameter(group=(_OF_RIDER, _LEG), validator=bounds("shank"))] = None
-    stature: Annotated[float | None, Parameter(group=(_OF_RIDER, _WHO))] = None
-    percentile: Annotated[float | None, Parameter(group=(_OF_RIDER, _WHO), validator=Number(gt=0, lt=100))] = None
-    sex: Annotated[Literal["male", "female"] | None, Parameter(group=_OF_RIDER)] = None
+    stature: Annotated[float | None, Parameter(group=(_OF_RIDER, _WHO, _PEOPLE))] = None
+    percentile: Annotated[float | None, Parameter(group=(_OF_RIDER, _WHO, _PEOPLE), validator=Number(gt=0, lt=100))] = (
+        None
+    )
+    sex: Annotated[Literal["male", "female"] | None, Parameter(group=(_OF_RIDER, _PEOPLE))] = None
 
     def load(self, design: Design) -> Rider:
         """The rider that the options describe. Raises InputError for what contradicts itself and for nobody."""
-        if (self.stature is None and self.percentile is None) != (self.sex is None):
-            raise InputError("--stature and --percentile need --sex male or --sex female, which needs one of them")
         if self.thigh is not None and self.shank is not None:
             return replace(design.rider, thigh=self.thigh, shank=self.shank)
         if self.sex is None:
             return design.rider
+        if self.stature is None and self.percentile is None:
+            raise InputError(f"--sex {self.sex} needs --stature or --percentile")
         people = next(people for people in populations().values() if people.sex == self.sex)
         if self.percentile is not None:
             return people.rider(self.percentile)
@@ -101,10 +115,7 @@ class SeatOptions:
     recline: _Degrees = (-20.0, 20.0)
 
     def load(self) -> SeatLimits:
-        """The limits. Raises InputError for a range that is empty."""
-        for name, (low, high) in vars(self).items():
-            if low > high:
-                raise InputError(f"--{name} is {low:g} {high:g}, an empty range; give the smaller number first")
+        """The limits."""
         return SeatLimits(self.forward, self.up, (math.radians(self.recline[0]), math.radians(self.recline[1])))
 
 

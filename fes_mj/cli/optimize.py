@@ -11,7 +11,6 @@ from fes_mj.cli.options import Out, refuse_beside
 from fes_mj.cli.process import interruption_code
 from fes_mj.cli.search_options import SearchOptions, shell_word
 from fes_mj.common.console import conclude, errors, print_table, progress_bar, say
-from fes_mj.common.errors import InputError
 from fes_mj.common.parallel import Workers
 from fes_mj.common.text import printable
 from fes_mj.common.writing import require_replaceable, require_writable, write_files, write_text
@@ -153,8 +152,8 @@ def _check_files(out: Path | None, report: Path | None, options: SearchOptions) 
             require_replaceable([path], f"the {key.partition('_')[0]}", inputs)
     require_writable(report, "the page", ".html", inputs)
     if report:
-        if options.drive.drive == "muscles":
-            raise InputError("--report shows a turn under joint moments: not with --drive muscles")
+        if options.drive.drive == "muscles":  # the page shows a turn under joint moments
+            refuse_beside("--drive muscles", {"--report": report})
         require_page_packages()
 
 

@@ -45,24 +45,33 @@ def needs(flag: str, *values: str) -> Callable[[ArgumentCollection], None]:
             return
         for argument in arguments:
             if argument.tokens and argument.name != flag:
-                raise ValueError(f"{argument.name} needs {' '.join([flag, ' or '.join(values)]).rstrip()}.")
+                given = _given(argument.name, argument.value)
+                raise ValueError(f"{given} needs {' '.join([flag, ' or '.join(values)]).rstrip()}.")
 
     return check
 
 
-def changed(options: object, *but: str) -> dict[str, bool]:
-    """Which options of a dataclass, by flag, are not as they are by default."""
+def _given(flag: str, value: object) -> str:
+    """An option as it was given; value: True or text of what has no value."""
+    values = value if isinstance(value, (list, tuple)) else [value]
+    return " ".join([flag, *(str(part) for part in values if part is not True)])
+
+
+def changed(options: object, *but: str) -> dict[str, Any]:
+    """Options of a dataclass, by flag, that are not as they are by default."""
     known = {field.name: field.default for field in fields(options)}  # type: ignore[arg-type]
     return {
-        f"--{name.replace('_', '-')}": value != known[name] for name, value in vars(options).items() if name not in but
+        f"--{name.replace('_', '-')}": value
+        for name, value in vars(options).items()
+        if name not in but and value != known[name]
     }
 
 
 def refuse_beside(flag: str, others: Mapping[str, object]) -> None:
-    """Raise InputError if an option is given that has no effect beside `flag`, which asks for something else."""
+    """Raise InputError if an option is given that has no effect beside `flag`; others: None, False or () if not."""
     for name, value in others.items():
-        if value:
-            raise InputError(f"{name} and {flag} exclude each other; leave out one of them")
+        if value is not None and value is not False and value != ():
+            raise InputError(f"{_given(name, value)} and {flag} exclude each other; leave out one of them")
 
 
 DESIGN_HELP = (

@@ -9,16 +9,20 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from cyclopts import Group, Parameter
-from cyclopts.validators import Number
+from cyclopts.validators import Number, mutually_exclusive
 
 from fes_mj.cli.drive import DriveOptions
-from fes_mj.cli.options import Flag, Jobs, MomentsOptions, PeopleOfEachSex, PrintOptions, Seed, needs
-from fes_mj.common.errors import InputError, require_extra
+from fes_mj.cli.options import Flag, Jobs, MomentsOptions, PeopleOfEachSex, PrintOptions, Seed, needs, refuse_beside
+from fes_mj.common.errors import require_extra
 from fes_mj.common.provenance import provenance
 from fes_mj.linkage.riders import SAMPLES
+from fes_mj.muscles.rules import BEST
 
 Methods = Literal["differential-evolution", "cma-es", "nsga-ii", "random-pursuit"]
 _Speed = Annotated[float, Parameter(validator=Number(gt=0))]
+_START, _SPEEDS = (Group(f"like or {name}", show=False, validator=mutually_exclusive) for name in ("start", "speeds"))
+_BUILD = Group("What can be built", validator=needs("--limits", "buildable"))
+_FRONT = Group("front", show=False, validator=needs("--method", "nsga-ii"))
 _PEOPLE = Group("People", validator=needs("--riders", "population", "population-p10"))
 _PACKAGES = {"cma-es": "cma", "nsga-ii": "pymoo"}
 _WITHOUT_EFFECT = ("json", "quiet", "jobs", "cluster", "print_problem")  # on what is found
@@ -65,13 +69,13 @@ class SearchOptions(PrintOptions, MomentsOptions):
     """
 
     drive: DriveOptions = field(default_factory=DriveOptions)
-    method: Methods = "differential-evolution"
+    method: Annotated[Methods, Parameter(group=("Parameters", _FRONT))] = "differential-evolution"
     budget: Annotated[int | None, Parameter(validator=Number(gte=1000))] = None
     searches: Annotated[int, Parameter(validator=Number(gte=1))] = 4
     seed: Seed = 0
-    like: str | None = None
-    start: str | None = None
-    speeds_of: str = "trt"
+    like: Annotated[str | None, Parameter(group=("Parameters", _START, _SPEEDS))] = None
+    start: Annotated[str | None, Parameter(group=("Parameters", _START))] = None
+    speeds_of: Annotated[str, Parameter(group=("Parameters", _SPEEDS))] = "trt"
     knee_speed_limit: _Speed | None = None
     hip_speed_limit: _Speed | None = None
     ripple_limit: Annotated[float | None, Parameter(validator=Number(gt=0, lte=200))] = None
@@ -79,50 +83,36 @@ class SearchOptions(PrintOptions, MomentsOptions):
     riders: Annotated[Literal["one", "population", "population-p10"], Parameter(group=_PEOPLE)] = "one"
     samples: Annotated[PeopleOfEachSex, Parameter(group=_PEOPLE)] = SAMPLES
     sample_seed: Annotated[Seed, Parameter(group=_PEOPLE)] = 0
-    smooth: Flag = False
+    smooth: Annotated[bool, Parameter(group=("Parameters", _FRONT), negative="")] = False
     problem: Path | None = None
-    limits: Literal["buildable", "paper"] = "buildable"
-    transmission_angle_min: Annotated[float | None, Parameter(validator=Number(gte=0, lte=90))] = None
-    hole_distance_min: Annotated[float | None, Parameter(validator=Number(gte=0, lte=1))] = None
-    pin_force_max: Annotated[float | None, Parameter(validator=Number(gt=0))] = None
-    hip_swing_min: Annotated[float | None, Parameter(validator=Number(gte=0, lte=180))] = None
-    extrapolated_max: Annotated[float | None, Parameter(validator=Number(gte=0, lte=1))] = None
-    clearance_min: Annotated[float | None, Parameter(validator=Number(lte=1))] = None
+    limits: Annotated[Literal["buildable", "paper"], Parameter(group=_BUILD)] = "buildable"
+    transmission_angle_min: Annotated[float | None, Parameter(group=_BUILD, validator=Number(gte=0, lte=90))] = None
+    hole_distance_min: Annotated[float | None, Parameter(group=_BUILD, validator=Number(gte=0, lte=1))] = None
+    pin_force_max: Annotated[float | None, Parameter(group=_BUILD, validator=Number(gt=0))] = None
+    hip_swing_min: Annotated[float | None, Parameter(group=_BUILD, validator=Number(gte=0, lte=180))] = None
+    extrapolated_max: Annotated[float | None, Parameter(group=_BUILD, validator=Number(gte=0, lte=1))] = None
+    clearance_min: Annotated[float | None, Parameter(group=_BUILD, validator=Number(lte=1))] = None
     print_problem: Flag = False
     jobs: Jobs = 1
     cluster: str | None = None
 
     def check(self) -> None:
-        """Refuse unusable options before anything runs."""
-        if self.like and (self.start or self.speeds_of != "trt"):
-            raise InputError("--like takes the place of --start and --speeds-of; leave these out")
-        if self.limits == "paper" and self.overrides:
-            raise InputError(
-                f"--{next(iter(self.overrides)).replace('_', '-')} is none of the paper's limits: not with "
-                "--limits paper"
-            )
-        if self.caution and (self.moments or self.method == "nsga-ii"):
-            raise InputError(
-                "--caution needs the error bars of one group's recovered moments: not with --moments or nsga-ii"
-            )
-        if self.riders != "one" and (self.caution or self.method == "nsga-ii"):
-            raise InputError(f"--riders {self.riders} is an objective of its own: not with --caution or nsga-ii")
+        """Refuse what cannot be asked for together, and a missing package, before anything runs."""
+        people = None if self.riders == "one" else self.riders
+        caution, muscles = self.caution or None, self.drive.drive == "muscles"
+        if self.method == "nsga-ii":  # weighs the powers of both groups
+            refuse_beside("--method nsga-ii", {"--caution": caution, "--riders": people, "--drive muscles": muscles})
+        if caution:  # needs the error bars of one group's recovered moments
+            refuse_beside(f"--caution {caution:g}", {"--moments": self.moments, "--riders": people})
+        if muscles:
+            timing = None if self.drive.timing == BEST else self.drive.timing
+            others = {"--timing": timing, "--caution": caution, "--ripple-limit": self.ripple_limit}
+            refuse_beside("--drive muscles", others)
+            self.drive.load_riders(self)
         if self.limits == "buildable":
             require_extra("build", "shapely")
         if self.method in _PACKAGES:
             require_extra("optimize", _PACKAGES[self.method])
-        if self.drive.drive == "muscles":
-            self._check_muscles()
-        if self.smooth and self.method != "nsga-ii":
-            raise InputError("--smooth is an objective of its own: it needs --method nsga-ii")
-
-    def _check_muscles(self) -> None:
-        """Refuse what is of joint moments alone."""
-        if self.drive.timing != "best":
-            raise InputError(f"--timing {self.drive.timing}: a design is found for muscles that are timed best")
-        self.drive.load_riders(self)
-        if self.caution or self.ripple_limit or self.method == "nsga-ii":
-            raise InputError("--caution, --ripple-limit and nsga-ii are for joint moments: not with --drive muscles")
 
     @property
     def overrides(self) -> dict[str, float]:

@@ -8,7 +8,18 @@ import numpy as np
 from cyclopts import Parameter
 
 from fes_mj.cli.drive import MusclesFirst
-from fes_mj.cli.options import Cadence, DesignName, Dims, Legs, MomentsOptions, PrintOptions, bounds, speed_at
+from fes_mj.cli.options import (
+    Cadence,
+    DesignName,
+    Dims,
+    Legs,
+    MomentsOptions,
+    PrintOptions,
+    bounds,
+    changed,
+    refuse_beside,
+    speed_at,
+)
 from fes_mj.cli.tables import span, with_error
 from fes_mj.common.console import print_table, say
 from fes_mj.common.errors import InputError, require_extra
@@ -47,24 +58,20 @@ def stimulation(
         csv: Write the windows by cadence as a table (.csv).
         out: Draw the page (.svg, .pdf or .png); may be given several times.
     """
+    by_muscles = drive.drive == "muscles"
+    if not by_muscles:  # where they drive the crank is the linkage's alone
+        refuse_beside("--drive moments", {"--cadence": cadence, **changed(whose)})
     loaded, pages = load_design(design, dims), out or []
     inputs = drive.inputs(whose, design)
     require_writable(csv, "the windows", ".csv", inputs)
     for page in pages:
         require_writable(page, "the page", PAGES, inputs)
         require_extra("report", "matplotlib")
-    by_muscles = drive.drive == "muscles"
     if by_muscles and drive.timing != BEST:
         raise InputError(
             f"--timing is {drive.timing}; windows that suit all riders who may be this one are those of `best`, "
             f"others are compared by `fes_mj static {design} --drive muscles --timing {drive.timing}`"
         )
-    for flag, given in {"--cadence": cadence, "--moments": whose.moments, "--group": whose.group}.items():
-        if given and not by_muscles:
-            raise InputError(
-                f"{flag}: where moments drive the crank depends on the linkage alone; leave it out, or use --drive "
-                "muscles"
-            )
     result: tuple[Any, ...]
     if by_muscles:
         speeds = [speed_at(rpm, loaded) for rpm in cadence or (None,)]

@@ -20,6 +20,7 @@ POINTS = 360  # crank angles of a turn
 ANGLES = np.arange(POINTS) * (2 * np.pi / POINTS)
 STEP = 5  # deg, of on-angles and widths
 DUTY = 100 / 360  # largest share of the turn in which a group is stimulated
+DUTIES = f"a share of the turn (degrees divided by 360), from {STEP / 360:.3f}, a window of {STEP} deg, to 1, all of it"
 LEAST_SHARE = 0.02  # of the expected power of all groups; for less a group is not worth its stimulation
 _STARTS = POINTS // STEP
 _MEMBERS = 100  # at once: the answers of more to every width leave the processor's cache
@@ -68,16 +69,18 @@ def responded(stimulation: FloatArray, riders: Riders, cadence: FloatArray) -> F
     return answer(stimulation, *times)
 
 
+def is_duty(share: float) -> bool:
+    """Whether a share of the turn is one of DUTIES."""
+    return STEP / 360 <= share <= 1
+
+
 def widths_up_to(duty: float) -> FloatArray:
     """Widths of windows, deg, no wider than this share of the turn, taken to the nearest degree: 0.222 means 80 deg.
 
     Raises InputError if there is none.
     """
-    if not STEP / 360 <= duty <= 1:
-        raise InputError(
-            f"duty is {duty:g}; it must be a share of the turn (degrees divided by 360), from {STEP / 360:.3f}, a "
-            f"window of {STEP} deg, to 1, all of it"
-        )
+    if not is_duty(duty):
+        raise InputError(f"duty is {duty:g}; it must be {DUTIES}")
     return np.arange(STEP, np.round(360 * duty) + 1, STEP)
 
 

@@ -38,7 +38,7 @@ from tests.cli.conftest import result
         (["simulate"], "requires an argument"),
         (["dance"], 'Unknown command "dance"'),
         (["static", "d1", "--louder"], "Unknown option"),
-        (["simulate", "d1", "--speed", "2"], "--speed needs --render"),
+        (["simulate", "d1", "--speed", "2"], "--speed 2.0 needs --render"),
         (["explain", "loop_gap"], "explain is now `fes_mj validate --explain CHECK`"),
         (["view", "d1"], "view is now `fes_mj simulate DESIGN --view`"),
     ],

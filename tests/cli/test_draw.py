@@ -3,11 +3,14 @@
 import json
 import re
 from pathlib import Path
+from typing import get_args
 
 import pytest
 
 import fes_mj
 from fes_mj.cli.app import run
+from fes_mj.cli.draw import Material
+from fes_mj.statics.materials import materials
 from fes_mj.statics.sizes import FORCE_POINTS, build
 
 OWN = """
@@ -68,7 +71,7 @@ def test_what_is_printed_has_the_units_of_its_heads(capsys: pytest.CaptureFixtur
 @pytest.mark.parametrize(
     ("arguments", "names"),
     [
-        (["d1", "--material", "wood"], ["material", "'wood'", "aluminium, steel, stainless"]),
+        (["d1", "--material", "wood"], ["--material", '"wood"', '"aluminium", "steel", "stainless"']),
         (["d1", "-o", "{file}"], ["{file}", "not a folder"]),
         (["r2", "--dims", "printed"], ["r2", "cannot close"]),
         (["r2"], ["r2", "no pin in stock bears", "N on the"]),
@@ -86,3 +89,7 @@ def test_bad_input(arguments: list[str], names: list[str], tmp_path: Path, capsy
     (line,) = printed.err.splitlines()
     assert all(name.format(file=file) in line for name in names), line
     assert [path.name for path in tmp_path.iterdir()] == ["file"]
+
+
+def test_the_materials_of_the_command_line_are_those_that_there_are() -> None:
+    assert get_args(Material) == materials()

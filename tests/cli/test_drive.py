@@ -77,12 +77,12 @@ def test_own_riders_are_those_of_the_file(capsys, tmp_path):
     ("arguments", "said"),
     [
         (("--timing", "best"), "--drive"),
-        (("--duty", "0.2"), "--duty needs --drive muscles"),
-        (("--drive", "moments", "--timing", "measured"), "--timing needs --drive muscles"),
+        (("--duty", "0.2"), "--duty 0.2 needs --drive muscles"),
+        (("--drive", "moments", "--timing", "measured"), "--timing measured needs --drive muscles"),
         ((*MUSCLES, "--muscles", "r.npz", "--moments", "m.csv"), "exclusive arguments: {--moments, --muscles}"),
         ((*MUSCLES, "--muscles", "r.npz", "--group", "p1p3"), "exclusive arguments: {--group, --muscles}"),
-        ((*MUSCLES, "--duty", "0"), "duty is 0"),
-        ((*MUSCLES, "--duty", "1.5"), "duty is 1.5"),
+        ((*MUSCLES, "--duty", "0"), '"0.0" for --duty'),
+        ((*MUSCLES, "--duty", "1.5"), '"1.5" for --duty. It must be a share of the turn'),
         ((*MUSCLES, "--moments", "mine.csv"), "--muscles"),
         ((*MUSCLES, "--muscles", "nowhere.npz"), "nowhere.npz"),
     ],
@@ -107,7 +107,7 @@ def test_own_moments_have_no_muscles_but_those_that_fit_them(capsys, command):
 def test_moments_take_no_options_of_muscles_where_these_are_the_default(capsys, option):
     code, out, err = result(capsys, "ride", "d1", "--drive", "moments", *option)
     assert (code, out) == (2, "")
-    assert f"{option[0]} needs --drive muscles." in err
+    assert f"{' '.join(option)} needs --drive muscles." in err
 
 
 def test_optimize_finds_a_design_for_muscles(capsys, tmp_path):
@@ -145,7 +145,7 @@ def test_optimize_finds_a_design_for_muscles(capsys, tmp_path):
         (("--timing", "measured"), "--timing measured"),
         (("--caution", "1"), "--caution"),
         (("--method", "nsga-ii"), "nsga-ii"),
-        (("--duty", "0"), "duty is 0"),
+        (("--duty", "0"), '"0.0" for --duty'),
         (("--moments", "mine.csv"), "--muscles"),
         (("--report", "page.html"), "--report"),
     ],

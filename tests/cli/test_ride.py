@@ -73,7 +73,7 @@ def test_out_writes_result_ride_and_model(capsys: pytest.CaptureFixture[str], tm
         (["--duration", "0"], '"0.0" for --duration. Must be >= 1.'),
         (["--crr", "2"], '"2.0" for --crr'),
         (["--drag-area", "inf"], '"inf" for --drag-area'),
-        (["--duty", "2"], "duty is 2"),
+        (["--duty", "2"], '"2.0" for --duty'),
         (["--timing", "by-angle"], "a ride knows the windows of best and measured alone"),
         (["--moments", "own.csv"], "--moments say nothing of muscles"),
         (["--out", "nowhere/out"], "nowhere: cannot write the results: the folder does not exist"),

@@ -81,7 +81,7 @@ def test_own_moments_have_no_muscles(capsys: pytest.CaptureFixture[str], tmp_pat
 
 def test_own_moments_and_own_muscles_are_two_runs(capsys: pytest.CaptureFixture[str]) -> None:
     said = result(capsys, "static", "d1", "--moments", "own.toml", "--muscles", "rider.npz")[2]
-    assert "--muscles needs --drive" in said
+    assert "exclusive arguments: {--moments, --muscles}" in said
 
 
 def test_what_is_asked_is_short(capsys: pytest.CaptureFixture[str]) -> None:

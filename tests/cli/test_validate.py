@@ -179,14 +179,14 @@ def test_published_measurements_are_a_report(
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (["d1", "--against", "published"], "DESIGN and --against exclude each other"),
+        (["d1", "--against", "published"], "DESIGN d1 and --against exclude each other"),
         (["--explain", "mean_power", "--against", "published"], "--against and --explain exclude each other"),
-        (["d9", "--explain", "mean_power"], "DESIGN and --explain exclude"),
-        (["--explain", "mean_power", "--cadence", "50"], "--cadence and --explain exclude"),
-        (["--explain", "mean_power", "--drive", "muscles"], "--drive and --explain exclude"),
-        (["--against", "published", "--group", "p1p2"], "--group and --against exclude"),
+        (["d9", "--explain", "mean_power"], "DESIGN d9 and --explain exclude"),
+        (["--explain", "mean_power", "--cadence", "50"], "--cadence 50.0 and --explain exclude"),
+        (["--explain", "mean_power", "--drive", "muscles"], "--drive muscles and --explain exclude"),
+        (["--against", "published", "--group", "p1p2"], "--group p1p2 and --against exclude"),
         *(
-            (["--explain", "mean_power", *option], f"{option[0]} and --explain exclude")
+            (["--explain", "mean_power", *option], f"{' '.join(option)} and --explain exclude")
             for option in (["--report", "a.html"], ["--junit", "a.xml"], ["--quick"], ["--faults"], ["--verbose"])
         ),
         (["--against", "somebody"], "must be published, or the .toml file"),

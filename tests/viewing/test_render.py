@@ -63,7 +63,7 @@ def test_true_speed_tells_designs_apart_where_slow_motion_does_not() -> None:
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (["--speed", "1"], "Invalid values for group Video. --speed needs --render."),
+        (["--speed", "1"], "Invalid values for group Video. --speed 1.0 needs --render."),
         *(
             (["--render", "v.mp4", "--speed", value], f"--speed is {value}; at 96.4 rpm it must be from 0.0104 to 6.23")
             for value in ("0", "nan", "1000")
