@@ -26,6 +26,8 @@ sys.exit(run(sys.argv[1:]))
         ["simulate", "r1", "--json"],
         ["validate", "r2", "--quick", "--report", "r.html", "--junit", "j.xml"],
         ["export", "d2", "-o", "m.xml", "--scene", "--variant", "two-legs"],
+        ["draw", "r1", "-o", "."],
+        ["ride", "trt", "--duration", "2", "--out", "."],
     ],
     ids=" ".join,
 )
@@ -36,6 +38,6 @@ def test_twice_the_same_bytes(arguments: list[str], tmp_path: Path) -> None:
         command = [sys.executable, "-c", SCRIPT, *arguments]
         done = subprocess.run(command, cwd=folder, env=os.environ | {"PYTHONHASHSEED": seed}, capture_output=True)
         assert (done.returncode, done.stderr) == (0, b"")
-        written.append({path.name: path.read_bytes() for path in folder.iterdir()} | {"": done.stdout})
+        written.append({path.name: path.read_bytes() for path in folder.rglob("*.*")} | {"": done.stdout})
     assert written[0].keys() == written[1].keys()
     assert [name for name in written[0] if written[0][name] != written[1][name]] == []
