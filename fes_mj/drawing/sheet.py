@@ -3,7 +3,6 @@
 import io
 from collections.abc import Sequence
 from importlib.metadata import version
-from typing import Any
 
 import numpy as np
 
@@ -121,37 +120,30 @@ def _title(pen: Pen, build: Build) -> None:
         pen.text(text, complex(left + _NAMES + 2, below + 2), height=TEXT if number > 1 else 1.6 * TEXT)
 
 
-def figure(pen: Pen) -> Any:
-    """The sheet as a matplotlib figure."""
+def pictures(pen: Pen) -> list[bytes]:
+    """The sheet as SVG and as PDF; without a date, so that the same sheet gives the same bytes."""
+    import matplotlib as mpl
     from ezdxf.addons.drawing.config import BackgroundPolicy, ColorPolicy, Configuration
     from ezdxf.addons.drawing.frontend import Frontend
     from ezdxf.addons.drawing.matplotlib import MatplotlibBackend
     from ezdxf.addons.drawing.properties import RenderContext
     from matplotlib.figure import Figure
 
-    drawn = Figure(figsize=(WIDTH / 25.4, HEIGHT / 25.4))
-    axes = drawn.add_axes((0, 0, 1, 1))
     look = Configuration(
         background_policy=BackgroundPolicy.WHITE,
         color_policy=ColorPolicy.BLACK,
         lineweight_scaling=72 / 25.4,  # the backend takes mm for points
         min_lineweight=0.1,
     )
-    backend = MatplotlibBackend(axes, adjust_figure=False)
-    Frontend(RenderContext(pen.document), backend, look).draw_layout(pen.document.modelspace())
-    axes.set(xlim=(0, WIDTH), ylim=(0, HEIGHT))
-    return drawn
-
-
-def pictures(pen: Pen) -> list[bytes]:
-    """The sheet as SVG and as PDF; without a date, so that the same sheet gives the same bytes."""
-    import matplotlib as mpl
-
     files = []
     with mpl.rc_context({"svg.hashsalt": "fes_mj"}):
-        drawn = figure(pen)
+        figure = Figure(figsize=(WIDTH / 25.4, HEIGHT / 25.4))
+        axes = figure.add_axes((0, 0, 1, 1))
+        backend = MatplotlibBackend(axes, adjust_figure=False)
+        Frontend(RenderContext(pen.document), backend, look).draw_layout(pen.document.modelspace())
+        axes.set(xlim=(0, WIDTH), ylim=(0, HEIGHT))
         for suffix, dated in (("svg", "Date"), ("pdf", "CreationDate")):
             stream = io.BytesIO()
-            drawn.savefig(stream, format=suffix, metadata={dated: None})
+            figure.savefig(stream, format=suffix, metadata={dated: None})
             files.append(stream.getvalue())
     return files

@@ -11,7 +11,7 @@ import numpy as np
 
 from fes_mj.common.arrays import FloatArray
 from fes_mj.common.errors import InputError
-from fes_mj.common.reading import Section, is_text, read_toml
+from fes_mj.common.reading import is_text, read_toml
 from fes_mj.common.units import RPM
 from fes_mj.linkage import kinematics
 from fes_mj.linkage.design_file import SIX_BARS, load_design
@@ -51,11 +51,13 @@ class Experiment:
         """Raises InputError naming file, line or key, value and what is allowed."""
         content = read_toml(path, "experiment")
         content.only(("experiment", "measured_on"))
-        section = content.section("experiment")
-        section.only(("cranked", "isometric"))
-        section.require(["cranked", "isometric"], "it names a file of measured numbers (docs/experiment.md)")
-        files = [_file(section, key) for key in ("cranked", "isometric")]
-        tables = [_columns(file, names) for file, names in zip(files, (CRANKED, ISOMETRIC), strict=True)]
+        section, columns = content.section("experiment"), {"cranked": CRANKED, "isometric": ISOMETRIC}
+        section.only(columns)
+        section.require(columns, "it names a file of measured numbers (docs/experiment.md)")
+        files = [
+            path.parent / section.value(key, None, is_text, "the name of a file beside this one") for key in columns
+        ]
+        tables = list(map(_columns, files, columns.values()))
         return cls((path, *files), read_tricycle(content.section("measured_on")), *tables)
 
     @property
@@ -101,10 +103,6 @@ class Experiment:
             columns.append(np.mean(activation(windows, riders, rpm * RPM) * power[rpm], axis=-1)[0, :, 0])
         hip, knee = self.isometric[:, 0], self.isometric[:, 1]
         return np.concatenate([np.stack(columns, axis=1), isometric(riders, hip, knee, design.rider)], axis=1)
-
-
-def _file(section: Section, key: str) -> Path:
-    return section.path.parent / str(section.value(key, None, is_text, "the name of a file beside this one"))
 
 
 def _columns(path: Path, names: tuple[str, ...]) -> FloatArray:
