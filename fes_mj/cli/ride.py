@@ -64,15 +64,10 @@ class RideOptions(VerboseOptions, MomentsOptions):
     def load(self, name: str, drive: MusclesFirst) -> Ride:
         """Load everything the options name. Raises InputError for what cannot be used."""
         design = load_design(name, self.dims)
-        moving: JointMoments | StimulatedRider
-        if drive.drive == "muscles":
-            moving = stimulated_rider(drive.load_muscles(self), design)
-        else:
-            moving = self.load_moments(2)
         launch = TRICYCLE_SPEED if self.launch is None else self.launch * KMH
         return Ride(
             design,
-            moving,
+            stimulated_rider(drive.load_muscles(self), design) if drive.drive == "muscles" else self.load_moments(2),
             Road(self.slope / 100, self.tricycle_mass, self.rolling_mass, self.crr, self.drag_area),
             transmission=self.transmission,
             launch=launch if self.from_rest is None else 0.0,
