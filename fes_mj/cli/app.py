@@ -19,12 +19,14 @@ EXPECTED = {
     MissingPartError: MISSING_PART,
     UnstableError: DISAGREES,
 }
+OPTIONAL = {"validate": "[DESIGN...]", "explore": "[DESIGN]"}  # arguments, which would be called ARGS
 LONGEST_MESSAGE = 1000  # characters
 
 app = App(name="fes_mj", help=PURPOSE, suppress_keyboard_interrupt=False)
 for _group, _commands in COMMANDS.items():
     for _command, _help in _commands.items():
-        app.command(f"fes_mj.cli.{_command}:{_command}", name=_command, help=_help, group=_group)
+        _usage = _command in OPTIONAL and f"Usage: fes_mj {_command} [OPTIONS] {OPTIONAL[_command]}"
+        app.command(f"fes_mj.cli.{_command}:{_command}", name=_command, help=_help, group=_group, usage=_usage or None)
 app.command(
     "fes_mj.cli.completion:install_completion",
     name="--install-completion",

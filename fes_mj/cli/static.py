@@ -1,8 +1,9 @@
 """`fes_mj static`: the quasi-static solver alone, of one design or of several side by side."""
 
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
+from cyclopts import Parameter
 
 from fes_mj.budget.budget import error_budget, summary
 from fes_mj.cli import tables
@@ -21,9 +22,7 @@ from fes_mj.statics.turn import LegTurns, QuasiStatic, quasi_static
 
 
 def static(
-    design: DesignName,
-    /,
-    *others: DesignName,
+    *names: Annotated[DesignName, Parameter(name="DESIGN", required=True)],
     options: RunOptions = RunOptions(),
     drive: DriveOptions = DriveOptions(),
     bearings: BearingOptions = BearingOptions(),
@@ -42,15 +41,15 @@ def static(
         loss = BearingLoss(JointForces(result.first), friction) if friction else None
         return Answered(drive, options, result, loss)
 
-    designs = [solved(name) for name in (design, *others)]
+    designs = [solved(name) for name in names]
 
     def source() -> dict[str, Any]:
         from fes_mj.common.provenance import provenance
 
-        designs = [design_path(name, options.dims) for name in (design, *others)]
-        return {"provenance": provenance(designs + drive.inputs(options))}
+        files = [design_path(name, options.dims) for name in names]
+        return {"provenance": provenance(files + drive.inputs(options))}
 
-    if others:
+    if len(designs) > 1:
         options.show(
             lambda: _comparison(designs, curves) | source(),
             lambda: _print_comparison(designs, options.verbose),

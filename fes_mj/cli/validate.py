@@ -32,7 +32,7 @@ FAULTY_DESIGN = "d1"
 
 
 def validate(
-    *designs: DesignName,
+    *designs: Annotated[DesignName, Parameter(name="DESIGN")],
     options: RunOptions = RunOptions(),
     drive: DriveOptions = DriveOptions(),
     quick: Flag = False,
