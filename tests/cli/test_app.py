@@ -111,8 +111,8 @@ def test_a_simulation_needs_no_plots_and_no_scipy() -> None:
     ("command", "usage"), [("static", "DESIGN..."), ("validate", "[DESIGN...]"), ("explore", "[DESIGN]")]
 )
 def test_what_a_command_takes_has_a_name(command: str, usage: str, capsys: pytest.CaptureFixture[str]) -> None:
-    assert run([command, "--help"]) == 0
-    text = capsys.readouterr().out
+    code, text, _ = result(capsys, command, "--help")
+    assert code == 0
     assert text.startswith(f"Usage: fes_mj {command} [OPTIONS] {usage}\n\n")
     assert " ".join(text.replace("│", "").split()).count("Of the paper trt,") == 1
     assert "[ARGS" not in text
