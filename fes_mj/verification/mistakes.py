@@ -87,12 +87,14 @@ def long_thigh(motion: Motion) -> Motion:
     return replace(kinematics.solve(design, motion.crank_angle), design=motion.design)
 
 
-def in_map(kind: type[TorqueMap]) -> Steps:
+def in_map(of: type[TorqueMap] = TorqueMap, **changes: Any) -> Steps:
+    """Attributes of the torque map, or of a faulty one, that are changed."""
+    kind = type("FaultyMap", (of,), changes)
     return {"torque": cached_property(lambda steps: kind(steps.drive))}
 
 
 class Misread(TorqueMap):
-    """Another angle and rate reach either form of the map."""
+    """Another angle and rate reach either form of the map: what `read` makes of them."""
 
     def read(self, joint: str, angle: Any, rate: Any) -> tuple[Any, Any]:
         raise NotImplementedError
@@ -105,27 +107,17 @@ class Misread(TorqueMap):
         return lambda angle, rate: moment(*self.read(joint, angle, rate))
 
 
-class DirectionsExchanged(Misread):
-    def read(self, joint: str, angle: Any, rate: Any) -> tuple[Any, Any]:
-        return angle, 1.0 - 2.0 * (rate >= 0)
+def without_boot(torque: TorqueMap, joint: str, angle: Any, rate: Any) -> tuple[Any, Any]:
+    return angle - float(torque.reference.design.boot_angle) * (joint == "knee"), rate
 
 
-class FromHorizontal(TorqueMap):
-    @cached_property
-    def table(self) -> PerJoint[FloatArray]:
-        return self.moments.at(GRID + self.reference.top_dead_centre)
+def from_horizontal(torque: TorqueMap) -> PerJoint[FloatArray]:
+    return torque.moments.at(GRID + torque.reference.top_dead_centre)
 
 
-class BootForgotten(Misread):
-    def read(self, joint: str, angle: Any, rate: Any) -> tuple[Any, Any]:
-        return angle - float(self.reference.design.boot_angle) * (joint == "knee"), rate
-
-
-class OpenTable(TorqueMap):
-    @cached_property
-    def table(self) -> PerJoint[FloatArray]:
-        known, pair = self.moments.crank_angle, PerJoint(self.moments.knee, self.moments.hip)
-        return pair.map(lambda moment: np.interp(GRID, known, moment))
+def open_table(torque: TorqueMap) -> PerJoint[FloatArray]:
+    known, pair = torque.moments.crank_angle, PerJoint(torque.moments.knee, torque.moments.hip)
+    return pair.map(lambda moment: np.interp(GRID, known, moment))
 
 
 class LateFeedback(TorqueMap):
@@ -205,10 +197,10 @@ STEPS: dict[str, Steps] = {
     ),
     "no_centripetal": in_result(Pipeline.motion, without_centripetal),
     "length_in_kinematics": in_result(Pipeline.motion, long_thigh),
-    "directions_exchanged": in_map(DirectionsExchanged),
-    "crank_zero": in_map(FromHorizontal),
-    "boot_forgotten": in_map(BootForgotten),
-    "open_table": in_map(OpenTable),
+    "directions_exchanged": in_map(Misread, read=lambda _, joint, angle, rate: (angle, 1.0 - 2.0 * (rate >= 0))),
+    "crank_zero": in_map(table=cached_property(from_horizontal)),
+    "boot_forgotten": in_map(Misread, read=without_boot),
+    "open_table": in_map(table=cached_property(open_table)),
     "late_feedback": in_map(LateFeedback),
     "length_in_model": in_model("bodies", "shank", pos=times(1.01)),
     "default_solref": in_model("equalities", solref=(0.02, 1.0)),
