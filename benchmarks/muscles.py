@@ -16,7 +16,7 @@ from fes_mj.moments.files import load_moments
 from fes_mj.muscles.drive import load_muscles
 from fes_mj.muscles.power import best_power
 from fes_mj.muscles.riders import load_riders
-from fes_mj.muscles.timing import POINTS
+from fes_mj.muscles.timing import TURN_POINTS
 from fes_mj.simulation.bench import simulate as simulated
 from fes_mj.statics.cycles import cycles
 from fes_mj.statics.drive import Drive
@@ -60,7 +60,7 @@ def main() -> None:
         measured = core.rates(
             {
                 "muscles": (COUNT, partial(best_power, rider, batch)),
-                "cycles": (COUNT, partial(cycles, batch, table, POINTS)),
+                "cycles": (COUNT, partial(cycles, batch, table, TURN_POINTS)),
             }
         )
         times = float(np.median(measured["cycles"] / measured["muscles"]))

@@ -18,7 +18,7 @@ import numpy as np
 from mujoco import mjx
 
 from fes_mj import load_design, load_moments
-from fes_mj.moments.drive import POINTS, drive
+from fes_mj.moments.drive import DRIVE_POINTS, drive
 from fes_mj.simulation.variants import variant_model, variant_options
 
 COPIES, DURATION = 64, 2.0  # s
@@ -33,7 +33,7 @@ def roll_out(design: str = "r2", copies: int = COPIES, duration: float = DURATIO
     model = spec.compile()
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, 0)
-    moment, behind = drive(chosen, moments), POINTS // 2
+    moment, behind = drive(chosen, moments), DRIVE_POINTS // 2
     table = np.array([np.roll(moment[joint], behind if leg == "left" else 0) for leg, joint in JOINTS])
     assert [model.actuator(i).name for i in range(model.nu)] == [f"{leg}_{joint}" for leg, joint in JOINTS]
     crank = int(model.joint("crank").qposadr[0])
@@ -41,8 +41,8 @@ def roll_out(design: str = "r2", copies: int = COPIES, duration: float = DURATIO
 
     def advance(_: int, carried: tuple[mjx.Data, jax.Array, jax.Array]) -> tuple[mjx.Data, jax.Array, jax.Array]:
         state, answer, lead = carried
-        place = (state.qpos[crank] + lead) * (POINTS / (2 * np.pi))
-        command = commands[:, jnp.floor(place).astype(int) % POINTS]
+        place = (state.qpos[crank] + lead) * (DRIVE_POINTS / (2 * np.pi))
+        command = commands[:, jnp.floor(place).astype(int) % DRIVE_POINTS]
         answer = command + kept * (answer - command)
         return mjx.step(put, state.replace(ctrl=answer)), answer, lead
 

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from fes_mj import load_design, load_moments, load_muscles, stimulated_rider
 from fes_mj.linkage.joints import JOINTS
 from fes_mj.linkage.legs import TWO_LEGS
-from fes_mj.muscles.anatomy import GROUPS
+from fes_mj.muscles.anatomy import MUSCLE_GROUPS
 from fes_mj.muscles.instant import LegMuscles, joint_moments, stimulation
 from fes_mj.muscles.stepping import MuscleStepper, steady
 from fes_mj.riding.stimulated import lead
@@ -28,7 +28,7 @@ PERIOD = 0.02  # s between two actions: a stimulator's 50 Hz
 TICK = PERIOD / 10  # s between two answers of the muscles
 EFFORT = 0.5  # m/s that full effort of all muscles costs
 STOPPED = 0.1  # m/s
-REST = (0.0,) * len(GROUPS)
+REST = (0.0,) * len(MUSCLE_GROUPS)
 
 
 class RideEnv(gymnasium.Env[NDArray[np.float64], NDArray[Any]]):
@@ -76,7 +76,7 @@ class RideEnv(gymnasium.Env[NDArray[np.float64], NDArray[Any]]):
         self.tendon = self.model.tendon("drivetrain").id
         self.freewheel = bool(self.model.tendon_limited[self.tendon])
         self.limit = float(self.model.tendon_range[self.tendon, 0])
-        active = len(TWO_LEGS) * len(GROUPS)
+        active = len(TWO_LEGS) * len(MUSCLE_GROUPS)
         largest = np.array([1, 1, 200, 50, *[1] * active * self.stimulated], float)  # no crank and no rider is faster
         self.bounds = np.where(np.arange(len(largest)) < 4, -largest, 0.0), largest
         self.observation_space = gymnasium.spaces.Box(*self.bounds, dtype=np.float64)
@@ -152,7 +152,9 @@ def table_policy(env: RideEnv) -> Policy:
         cosine, sine, speed = observation[:3]
         felt = math.atan2(sine, cosine) + lead(stimulator, speed) + speed * (env.muscles.delay + PERIOD / 2)
         asked = [
-            stimulation(stimulator.stimulus, group, felt - leg.lag) for leg in TWO_LEGS for group in range(len(GROUPS))
+            stimulation(stimulator.stimulus, group, felt - leg.lag)
+            for leg in TWO_LEGS
+            for group in range(len(MUSCLE_GROUPS))
         ]
         return np.array(np.round(asked), np.int8)
 

@@ -20,8 +20,8 @@ from fes_mj.crosscheck.turn_case import Case
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.design_file import DESIGNS, load_design
 from fes_mj.moments.files import load_moments
-from fes_mj.moments.joint_moments import GROUPS
-from fes_mj.optimization.buildable import PLAIN, Buildability
+from fes_mj.moments.joint_moments import RIDER_GROUPS
+from fes_mj.optimization.buildable import PLAIN_BEARINGS, Buildability
 from fes_mj.statics.characteristics import energy_swing
 from fes_mj.statics.friction import BearingLoss
 from fes_mj.statics.joint_forces import JointForces
@@ -29,7 +29,7 @@ from fes_mj.statics.sizes import build
 from fes_mj.statics.turn import QuasiStatic, quasi_static
 
 RESULTS = Path(__file__).parents[1] / "results"
-ROLLING = PLAIN._replace(friction=0.002)
+ROLLING = PLAIN_BEARINGS._replace(friction=0.002)
 POINTS = 720
 
 
@@ -47,7 +47,7 @@ def ranking(turns: list[QuasiStatic]) -> Table:
     rows = []
     for turn in turns:
         forces = JointForces(turn)
-        plain, rolling = (BearingLoss(forces, bearings).power for bearings in (PLAIN, ROLLING))
+        plain, rolling = (BearingLoss(forces, bearings).power for bearings in (PLAIN_BEARINGS, ROLLING))
         power = turn.power_mean
         rows.append((turn.design.name, power, plain, 100 * plain / power, power - plain, 100 * rolling / power))
     columns = {
@@ -59,8 +59,9 @@ def ranking(turns: list[QuasiStatic]) -> Table:
         "lost in rolling ones, %": ".2f",
     }
     note = (
-        f"Plain: coefficient of friction {PLAIN.friction:g}, pins of {1e3 * PLAIN.radius:g} mm radius; rolling: "
-        f"{ROLLING.friction:g}. One leg, forces with masses, hip and knee left out; the first has most left."
+        f"Plain: coefficient of friction {PLAIN_BEARINGS.friction:g}, pins of {1e3 * PLAIN_BEARINGS.radius:g} mm "
+        f"radius; rolling: {ROLLING.friction:g}. One leg, forces with masses, hip and knee left out; the first has "
+        "most left."
     )
     return Table("Power after the bearings", columns, sorted(rows, key=lambda row: -row[4]), note)
 
@@ -137,7 +138,7 @@ def real_links(turns: list[QuasiStatic]) -> Table:
 def main() -> int:
     rows: dict[str, Any] = {"provenance": provenance()}
     pages = ["# What can be built\n\nWritten by `python -m studies.build`.\n"]
-    for group in GROUPS:
+    for group in RIDER_GROUPS:
         moments = load_moments(group)
         turns = [quasi_static(design, moments, points=POINTS) for design in designs()]
         tables = [ranking(turns), limits(turns), real_links(turns[: len(DESIGNS)])]

@@ -24,8 +24,8 @@ from fes_mj.crosscheck.turn_case import Case
 from fes_mj.fit.population import fit_population
 from fes_mj.linkage.design_file import DESIGNS, load_design
 from fes_mj.moments.files import load_moments
-from fes_mj.moments.joint_moments import GROUPS
-from fes_mj.optimization.buildable import PLAIN, Buildability, BuildLimits
+from fes_mj.moments.joint_moments import RIDER_GROUPS
+from fes_mj.optimization.buildable import PLAIN_BEARINGS, Buildability, BuildLimits
 from fes_mj.riding.ride import Ride
 from fes_mj.statics.friction import BearingLoss
 from fes_mj.statics.joint_forces import JointForces
@@ -36,7 +36,7 @@ FOLDER = Path(__file__).parents[1] / "results" / "optimization"
 BUILDABLE = FOLDER / "buildable"
 KINDS = ("trt", "crt", "cdt")
 # File name's end -> whose joint speeds are the limits, by group.
-SPEEDS = {"": dict.fromkeys(GROUPS, "trt"), "-fast": {"p1p2": "d1", "p1p3": "d2"}}
+SPEEDS = {"": dict.fromkeys(RIDER_GROUPS, "trt"), "-fast": {"p1p2": "d1", "p1p3": "d2"}}
 SAMPLES = 200  # people of each sex
 LIMITS = {"hip swing": "hip_swing_min", "known moments": "extrapolated_max", "clearance": "clearance_min",
           "transmission angle": "transmission_angle_min", "hole distance": "hole_distance_min",
@@ -46,7 +46,7 @@ LIMITS = {"hip swing": "hip_swing_min", "known moments": "extrapolated_max", "cl
 def power() -> Table:
     """What each design gives beside the best tricycle of its problem, and after plain bearings."""
     rows: list[tuple[Any, ...]] = []
-    for group in GROUPS:
+    for group in RIDER_GROUPS:
         moments = load_moments(group)
         for end, speeds in SPEEDS.items():
             best = quasi_static(load_design(BUILDABLE / f"trt-{group}{end}.toml"), moments)
@@ -54,7 +54,7 @@ def power() -> Table:
             for name in (speeds[group], *(f"{kind}-{group}{end}" for kind in KINDS)):
                 path = BUILDABLE / f"{name}.toml"
                 turn = quasi_static(load_design(path if path.exists() else name), moments)
-                lost = BearingLoss(JointForces(turn), PLAIN).power
+                lost = BearingLoss(JointForces(turn), PLAIN_BEARINGS).power
                 ratio = turn.power_mean / best.power_mean, ratio_sd(turn, best)
                 gain = turn.power_mean - printed.power_mean, difference_sd(turn, printed)
                 rows.append((group.upper(), speeds[group].upper(), name, turn.power_mean, *ratio, *gain,
@@ -101,7 +101,7 @@ def trial(group: str, name: str) -> tuple[Any, ...]:
 
 def tried() -> Table:
     """Simulated, sized, ridden, fitted."""
-    names = [(group, f"{kind}-{group}{end}") for group in GROUPS for end in SPEEDS for kind in KINDS]
+    names = [(group, f"{kind}-{group}{end}") for group in RIDER_GROUPS for end in SPEEDS for kind in KINDS]
     rows = list(itertools.starmap(trial, track(names, "designs")))
     columns = {
         "design": "",
@@ -128,7 +128,7 @@ def passed() -> Table:
     names = [*DESIGNS, *map(str, found)]
     broken = {}
     for name in track(names, "limits"):
-        group = GROUPS[1] if Path(name).stem.startswith(("r2", "d2")) else GROUPS[0]
+        group = RIDER_GROUPS[1] if Path(name).stem.startswith(("r2", "d2")) else RIDER_GROUPS[0]
         broken[name] = Buildability.of(quasi_static(load_design(name), load_moments(group))).broken()
     assert {*LIMITS.values()} == {field.name for field in fields(BuildLimits)}
     rows: list[tuple[Any, ...]] = []

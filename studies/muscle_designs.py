@@ -26,9 +26,9 @@ from fes_mj.common.writing import json_text, write_text
 from fes_mj.crosscheck.turn_case import Case
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.design_file import DESIGNS, load_design
-from fes_mj.linkage.riders import SAMPLES
-from fes_mj.moments.joint_moments import GROUPS as RIDER_GROUPS
-from fes_mj.muscles.anatomy import GROUPS
+from fes_mj.linkage.riders import PEOPLE_PER_SEX
+from fes_mj.moments.joint_moments import RIDER_GROUPS
+from fes_mj.muscles.anatomy import MUSCLE_GROUPS
 from fes_mj.muscles.drive import Muscles
 from fes_mj.muscles.power import MuscleTurn, best_turn
 from fes_mj.muscles.riders import load_riders
@@ -96,7 +96,7 @@ def _word(agrees: bool) -> str:
 
 def people() -> Iterator[tuple[Any, ...]]:
     """Of the designs for people: expected power over the sample, each in a seat of his or her own, member by member."""
-    riders, share = load_riders("p1p2"), sampled("population", SAMPLES, 0).plane.mean(axis=0)
+    riders, share = load_riders("p1p2"), sampled("population", PEOPLE_PER_SEX, 0).plane.mean(axis=0)
     of_each: dict[str, FloatArray] = {}
     for kind in KINDS:
         design, powers, agree = load_design(FOUND / f"{kind}-population.toml"), [], []
@@ -175,7 +175,7 @@ def main() -> int:
     )  # fmt: skip
     why = Table(
         "Where it comes from",
-        {"group": "", "design": "", **{f"{name}, J a turn": ".2f" for name in GROUPS}, "knee range, deg": ".0f",
+        {"group": "", "design": "", **{f"{name}, J a turn": ".2f" for name in MUSCLE_GROUPS}, "knee range, deg": ".0f",
          "hip range, deg": ".0f", "knee speed, deg/s": ".0f", "hip speed, deg/s": ".0f",
          "knee extends, % of the turn": ".0f", "both legs, least, W": ".1f",
          "both legs below 0, %": ".0f"},
@@ -188,8 +188,9 @@ def main() -> int:
          **dict.fromkeys(("per the best TRT, 5 %", "50 %", "95 %"), ".2f"), "members with more, %": ".0f",
          "simulated: agrees": ""},
         [*people()],
-        f"P1P2's muscles in the legs of {SAMPLES:,} men and as many women (ANSUR II), of whom five stand for all, each "
-        "in a seat of his or her own; power of one leg in the mean of all, and as drawn that of the paper's rider.",
+        f"P1P2's muscles in the legs of {PEOPLE_PER_SEX:,} men and as many women (ANSUR II), of whom five stand for "
+        "all, each in a seat of his or her own; power of one leg in the mean of all, and as drawn that of the "
+        "paper's rider.",
     )  # fmt: skip
     tables = (over, why, for_people)
     rows = {table.title: table.records() for table in tables}

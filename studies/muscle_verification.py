@@ -13,7 +13,7 @@ from fes_mj.common.console import track
 from fes_mj.common.markdown import Table
 from fes_mj.common.writing import write_text
 from fes_mj.linkage.design_file import DESIGNS, load_design
-from fes_mj.moments.joint_moments import GROUPS
+from fes_mj.moments.joint_moments import RIDER_GROUPS
 from fes_mj.muscles.drive import load_muscles
 from fes_mj.muscles.rules import RULES
 from fes_mj.verification.case import VerificationCase
@@ -55,7 +55,7 @@ def main() -> None:
     """Run all, write the page; exit code 1 if a check fails."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", type=Path, default=ROOT / "results" / "muscle_verification.md")
-    rows = [row(*named) for named in track([*product(DESIGNS, GROUPS, RULES)], "muscles")]
+    rows = [row(*named) for named in track([*product(DESIGNS, RIDER_GROUPS, RULES)], "muscles")]
     note = "One leg of the most probable rider, at the design's cadence; by-angle, moments belong to joint angles."
     table = Table("Statics and MuJoCo", COLUMNS, rows, note)
     origin = "Written by `python -m studies.muscle_verification`; see docs/muscles.md."

@@ -16,13 +16,13 @@ from fes_mj.common.provenance import provenance
 from fes_mj.common.writing import json_text, write_text
 from fes_mj.linkage.design_file import design_toml, load_design
 from fes_mj.moments.files import load_moments
-from fes_mj.moments.joint_moments import GROUPS
+from fes_mj.moments.joint_moments import RIDER_GROUPS
 from fes_mj.optimization.limits import DEFAULT, load_limits
 from fes_mj.optimization.moment_drive import MomentDrive
 from fes_mj.optimization.optimize import run_searches
 from fes_mj.optimization.pareto import pareto_front
 from fes_mj.optimization.problem import Problem
-from fes_mj.optimization.search import Result
+from fes_mj.optimization.search import SearchResult
 from fes_mj.optimization.winner import Winner, assess, gain
 from fes_mj.statics.cycles import joint_speeds
 from fes_mj.statics.work_table import WorkTable, uncertain_table
@@ -59,7 +59,7 @@ def problem(target: str, manufacturable: bool, caution: float = 0.0) -> Problem:
     return replace(task, drive=MomentDrive(caution=caution, baseline=baseline))
 
 
-def summarise(target: str, method: str, results: list[Result], reference: float | None) -> Row:
+def summarise(target: str, method: str, results: list[SearchResult], reference: float | None) -> Row:
     merits = np.array([result.merit for result in results])
     reached = None
     if reference is not None:
@@ -76,7 +76,7 @@ def summarise(target: str, method: str, results: list[Result], reference: float 
     )
 
 
-def at_budget(result: Result, budget: int) -> Result:
+def at_budget(result: SearchResult, budget: int) -> SearchResult:
     """What a search had found after `budget` evaluations."""
     known = result.history[result.history[:, 0] <= budget]
     merit = float(known[-1, 1]) if len(known) else -np.inf
@@ -116,7 +116,7 @@ def fronts() -> dict[str, Any]:
     trt = load_design("trt")
     result = {}
     for kind, template in (("crt", "r1"), ("cdt", "d1")):
-        moments = tuple(load_moments(group) for group in GROUPS)
+        moments = tuple(load_moments(group) for group in RIDER_GROUPS)
         table = WorkTable.of(*moments)
         task = Problem(load_design(template), table, load_limits(), joint_speeds(trt, table))
         front = pareto_front(task, moments, BUDGET, seed=1)

@@ -13,7 +13,7 @@ from fes_mj.common.style import SERIES
 from fes_mj.common.writing import json_text, write_text
 from fes_mj.muscles.riders import load_riders
 from fes_mj.validation.machines import stepping_per_cycling
-from fes_mj.validation.published import FILE, RULE, VERDICTS, counts, rows
+from fes_mj.validation.published import PUBLISHED_FILE, RULE, VERDICTS, counts, rows
 from fes_mj.viewing.charts import write_figure
 
 PATH = Path(__file__).parents[1] / "results" / "published.md"
@@ -119,7 +119,9 @@ def main() -> None:
     pages += ["![Predictions in half widths of the measurements](published.png)\n", "## Row by row\n"]
     write_text(PATH, "\n\n".join(page.rstrip() for page in [*pages, *map(details, records)]) + "\n")
     content = {table.title: table.records() for table in made} | {"count": sum(counts(records).values())}
-    write_text(PATH.with_suffix(".json"), json_text({"provenance": provenance([FILE]), "rows": records, **content}))
+    write_text(
+        PATH.with_suffix(".json"), json_text({"provenance": provenance([PUBLISHED_FILE]), "rows": records, **content})
+    )
     write_figure(picture, figure, records)
 
 

@@ -29,7 +29,7 @@ from fes_mj.crosscheck.ride_case import RideCase
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.design_file import DESIGNS, load_design
 from fes_mj.moments.files import load_moments
-from fes_mj.moments.joint_moments import GROUPS, JointMoments
+from fes_mj.moments.joint_moments import RIDER_GROUPS, JointMoments
 from fes_mj.muscles.drive import load_muscles
 from fes_mj.riding.ride import TRANSMISSIONS, Ride, Road, balancing_slope
 from fes_mj.riding.stimulated import StimulatedRider, stimulated_rider
@@ -46,7 +46,7 @@ DRIVES = ("moments", "muscles")
 def paper_rides() -> Iterator[Ride]:
     """All combinations."""
     for name in DESIGNS:
-        for group in GROUPS:
+        for group in RIDER_GROUPS:
             moments = load_moments(group)
             for transmission in TRANSMISSIONS:
                 ride = Ride(load_design(name), moments, transmission=transmission, duration=DURATION)
@@ -73,7 +73,7 @@ def random_rides() -> Iterator[Ride]:
 
 def _driven(rng: np.random.Generator, drive: str) -> tuple[Design, JointMoments | StimulatedRider]:
     """A random linkage and what drives it, the joints within the angles for which muscle lengths are known."""
-    group = str(rng.choice(GROUPS))
+    group = str(rng.choice(RIDER_GROUPS))
     while True:
         design = random_design(rng, nearest=NEAREST)
         if drive == "moments":

@@ -13,17 +13,17 @@ from fes_mj.common.markdown import Table
 from fes_mj.common.units import RPM
 from fes_mj.common.writing import write_text
 from fes_mj.linkage.design_file import DESIGNS, load_design
-from fes_mj.moments.joint_moments import GROUPS
+from fes_mj.moments.joint_moments import RIDER_GROUPS
 from fes_mj.muscles.riders import load_riders
 from fes_mj.muscles.setting import MISTIMED, Setting
-from fes_mj.riding.stimulation import CORE, LEAST_SHARE, stimulation
+from fes_mj.riding.stimulation import CORE, LEAST_SWING, stimulation
 
 PATH = Path(__file__).parents[1] / "results" / "stimulation.md"
 
 
 def settings() -> Iterator[Setting]:
     """Best stimulation of both rider groups on every design, at the paper's gears."""
-    for group in GROUPS:
+    for group in RIDER_GROUPS:
         for name in DESIGNS:
             design = load_design(name)
             yield Setting.best(design, load_riders(group), design.linkage.cadence)
@@ -75,7 +75,7 @@ NOTES = {
     "What a leg gives and costs": "All groups together.",
     "Where the linkage lets moments drive": f"""\
 `fes_mj stimulation DESIGN --drive moments`. *Core*: the part of a window in which the joint moves at least {CORE:g}
-times as fast per crank angle as at best there. Windows with less than {100 * LEAST_SHARE:g} % of the joint's swing are
+times as fast per crank angle as at best there. Windows with less than {100 * LEAST_SWING:g} % of the joint's swing are
 left out. *Both*: in how much of the hamstrings' window the hip extends as well.""",
 }
 _WHOSE = {"group": "", "design": ""}

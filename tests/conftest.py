@@ -18,7 +18,7 @@ from hypothesis import settings
 import fes_mj
 from fes_mj.fit.search import best_seats
 from fes_mj.linkage.design_file import DESIGNS
-from fes_mj.moments.joint_moments import GROUPS
+from fes_mj.moments.joint_moments import RIDER_GROUPS
 from fes_mj.sweep.study import load_study
 from fes_mj.sweep.sweep import Sweep
 
@@ -56,7 +56,9 @@ def design(request: pytest.FixtureRequest) -> fes_mj.Design:
     return fes_mj.load_design(request.param)
 
 
-@pytest.fixture(params=[pytest.param(group, marks=() if group == GROUPS[0] else pytest.mark.long) for group in GROUPS])
+@pytest.fixture(
+    params=[pytest.param(group, marks=() if group == RIDER_GROUPS[0] else pytest.mark.long) for group in RIDER_GROUPS]
+)
 def moments(request: pytest.FixtureRequest) -> fes_mj.JointMoments:
     """The recovered moments of each group in turn, of the second one in the long tests."""
     return fes_mj.load_moments(request.param)

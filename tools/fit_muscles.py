@@ -7,13 +7,13 @@ import numpy as np
 
 from fes_mj.common.reading import read_toml
 from fes_mj.linkage import kinematics
-from fes_mj.moments.joint_moments import GROUPS as RIDER_GROUPS
+from fes_mj.moments.joint_moments import RIDER_GROUPS
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.moments.uncertainty import power_weights
-from fes_mj.muscles.anatomy import GROUPS
+from fes_mj.muscles.anatomy import MUSCLE_GROUPS
 from fes_mj.muscles.identification import WHOLE, Measured, identify
 from fes_mj.muscles.riders import SHIPPED
-from fes_mj.muscles.timing import ANGLES
+from fes_mj.muscles.timing import TURN_ANGLES
 from fes_mj.paper.evidence import load_evidence, of_group
 from fes_mj.paper.reconstruction import System
 from fes_mj.paper.statements import TEXT
@@ -30,8 +30,12 @@ def measured(group: str) -> Measured:
     """The numbers from which a rider group's moments were recovered, and its work shares, as measured numbers."""
     system = System.of(of_group(load_evidence(), group))
     shares = [row for row in read_toml(TEXT, "statements").content["share"] if row["group"] == group]
-    known = [(GROUPS.index(WORKERS[row["muscles"]]), row["value"] / 100) for row in shares if row["muscles"] in WORKERS]
-    power = power_weights(kinematics.solve(PAPER_TRICYCLE.design, ANGLES), PAPER_TRICYCLE.cadence, PAPER_TRICYCLE)
+    known = [
+        (MUSCLE_GROUPS.index(WORKERS[row["muscles"]]), row["value"] / 100)
+        for row in shares
+        if row["muscles"] in WORKERS
+    ]
+    power = power_weights(kinematics.solve(PAPER_TRICYCLE.design, TURN_ANGLES), PAPER_TRICYCLE.cadence, PAPER_TRICYCLE)
     return Measured(
         np.concatenate([system.weights, np.tile(power, (len(known), 1))]),
         np.array([WHOLE] * len(system.values) + [number for number, _ in known]),

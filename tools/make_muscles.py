@@ -13,9 +13,9 @@ import numpy as np
 from fes_mj.common.arrays import FloatArray
 from fes_mj.common.writing import write_text
 from fes_mj.moments.tables import load_table
-from fes_mj.muscles.anatomy import FILE
+from fes_mj.muscles.anatomy import ANATOMY_FILE
 from fes_mj.muscles.geometry import Flexion, derivatives, terms
-from fes_mj.muscles.passive import FILE as PASSIVE, published
+from fes_mj.muscles.passive import PASSIVE_FILE as PASSIVE, published
 
 DEGREE = 5
 DECIMALS = 9  # of m and J
@@ -75,7 +75,11 @@ def numbers(values: FloatArray) -> str:
 
 
 def main() -> None:
-    lengths, parameters, path = Path(sys.argv[1]), Path(sys.argv[2]), Path(sys.argv[3]) if sys.argv[3:] else FILE
+    lengths, parameters, path = (
+        Path(sys.argv[1]),
+        Path(sys.argv[2]),
+        Path(sys.argv[3]) if sys.argv[3:] else ANATOMY_FILE,
+    )
     table, known = load_table(lengths, "muscle lengths"), json.loads(parameters.read_text())
     angles = [table.column(f"{joint}_flexion_deg") for joint in ("hip", "knee")]
     columns = np.column_stack([table.column(f"{name}_m") for name in known])

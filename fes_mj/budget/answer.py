@@ -28,11 +28,11 @@ from fes_mj.muscles.power import MuscleTurn
 from fes_mj.muscles.pull import pull_each
 from fes_mj.muscles.riders import Riders, load_riders
 from fes_mj.muscles.rules import BEST, stimulated
-from fes_mj.muscles.timing import ANGLES, DUTY, activation
+from fes_mj.muscles.timing import DUTY, TURN_ANGLES, activation
 from fes_mj.statics.drive import Drive
 from fes_mj.statics.turn import QuasiStatic
 
-NO_MUSCLES = "no muscles belong to these moments; `fes_mj moments TRIAL --fit-muscles -o RIDER.npz` finds some"
+HOW_TO_FIT_MUSCLES = "no muscles belong to these moments; `fes_mj moments TRIAL --fit-muscles -o RIDER.npz` finds some"
 
 INTERVAL = (5, 95)  # %, between which a quantity is said to lie
 
@@ -138,7 +138,7 @@ def answer(
     mean = float(np.mean([leg.power_mean for leg in legs])) if legs else None
     paper = paper_powers(*legs) if legs else None
     if riders is None:
-        return Answer(design, mean, paper, missing=NO_MUSCLES)
+        return Answer(design, mean, paper, missing=HOW_TO_FIT_MUSCLES)
     try:
         rider = rider_powers(design, riders, cadence, duty)
     except InputError as error:
@@ -168,7 +168,7 @@ def rider_powers(design: Design, riders: Riders, cadence: float | None = None, d
     cadence = design.linkage.cadence if cadence is None else float(cadence)
     windows = stimulated(BEST, riders, design, cadence, duty).windows
     assert windows is not None  # the best rule has them
-    motion = kinematics.solve(drawn_designs(design, len(riders)), ANGLES)
+    motion = kinematics.solve(drawn_designs(design, len(riders)), TURN_ANGLES)
     with np.errstate(invalid="ignore"):
         pulled = pull_each(riders, motion, cadence)
         power = MuscleTurn(pulled, activation(windows, riders, cadence)).power_mean[:, 0]

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from fes_mj.budget.power import Rows, UncertainPower
+from fes_mj.budget.power import RealisationRows, UncertainPower
 from fes_mj.budget.unknowns import EXTRAPOLATION, MASSES, MOMENTS, priors
 from fes_mj.common.arrays import FloatArray, IntArray
 from fes_mj.common.brief import Brief
@@ -16,9 +16,9 @@ from fes_mj.common.errors import require_extra
 from fes_mj.moments.uncertainty import standard_deviation, with_sd
 from fes_mj.statics.turn import QuasiStatic
 
-DRAWS = 256  # of a single command: a standard deviation is known to 4 % of itself, in 0.2 s
+BUDGET_DRAWS = 256  # of a single command: a standard deviation is known to 4 % of itself, in 0.2 s
 _SEED = 2007
-SAMPLES = 1024  # times two more than there are unknowns are evaluated; a power of two, as Sobol's points ask
+SOBOL_SAMPLES = 1024  # times two more than there are unknowns are evaluated; a power of two, as Sobol's points ask
 _SOBOL_SEED = 2022
 _OF_A_LEG = (MOMENTS, EXTRAPOLATION)  # which legs with moments of their own do not share
 
@@ -61,7 +61,7 @@ class ErrorBudget(Brief):
         return f"{together} W with every unknown drawn (sd of each alone: {alone}){failed}"
 
 
-def error_budget(*legs: QuasiStatic, draws: int = DRAWS) -> ErrorBudget | None:
+def error_budget(*legs: QuasiStatic, draws: int = BUDGET_DRAWS) -> ErrorBudget | None:
     """Of the mean power of legs, each with moments of its own; None where the error of any moments is not known.
 
     >>> budget = fes_mj.error_budget(fes_mj.quasi_static(fes_mj.load_design("d1"), fes_mj.load_moments("p1p2")))
@@ -78,7 +78,7 @@ def error_budget(*legs: QuasiStatic, draws: int = DRAWS) -> ErrorBudget | None:
 
 
 @lru_cache(maxsize=8)  # a result has both its interval and its budget
-def paper_powers(*legs: QuasiStatic, draws: int = DRAWS) -> FloatArray | None:
+def paper_powers(*legs: QuasiStatic, draws: int = BUDGET_DRAWS) -> FloatArray | None:
     """The same powers with all unknowns drawn, W, shape (draws,), NaN where a linkage does not turn; None likewise."""
     if any(leg.moments.covariance is None for leg in legs):
         return None
@@ -111,7 +111,7 @@ def together(names: Iterable[str], count: int, times: int = 1) -> dict[str, IntA
     return {name: random.permutation(np.tile(np.arange(count), times)) for name in names}
 
 
-def powers(legs: list[UncertainPower], rows: Rows) -> FloatArray:
+def powers(legs: list[UncertainPower], rows: RealisationRows) -> FloatArray:
     """UncertainPower.at of the mean of legs; what belongs to a leg is independent of the other's."""
     of_legs = [legs[0].at(rows)]
     for leg in legs[1:]:
@@ -141,7 +141,7 @@ class Share(NamedTuple):
 
 
 def shares(
-    power: Callable[[dict[str, IntArray]], FloatArray], names: Sequence[str], count: int, samples: int = SAMPLES
+    power: Callable[[dict[str, IntArray]], FloatArray], names: Sequence[str], count: int, samples: int = SOBOL_SAMPLES
 ) -> dict[str, Share]:
     """Sobol's first and total order of a power, W, as a function of one of `count` realisations of each unknown.
 

@@ -21,11 +21,11 @@ from fes_mj.statics.turn import QuasiStatic
 
 # Over the angles of SCAN; against twenty times as many a power changes by less than 0.02 W rms.
 TABLE = 360  # crank angles of the measurement, between which moments are interpolated linearly
-BLOCK = 1000  # rows at once: their arrays take some ten megabytes
+ROW_BLOCK = 1000  # rows at once: their arrays take some ten megabytes
 _TURN = np.arange(TABLE) * (2 * np.pi / TABLE)
 _TERMS = fourier(_TURN).T
 
-Rows = Mapping[str, IntArray]  # by unknown which realisation; one that is missing is as it is known best
+RealisationRows = Mapping[str, IntArray]  # by unknown which realisation; one that is missing is as it is known best
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,26 +43,26 @@ class UncertainPower:
         """Realisations of every unknown."""
         return realisations(self.result.design, self.result.moments, self.count)
 
-    def at(self, rows: Rows) -> FloatArray:
+    def at(self, rows: RealisationRows) -> FloatArray:
         """Power of each row of realisations, W, shape (rows,); NaN where the linkage does not turn."""
         count = len(next(iter(rows.values())))
-        blocks = [slice(start, start + BLOCK) for start in range(0, count, BLOCK)]
+        blocks = [slice(start, start + ROW_BLOCK) for start in range(0, count, ROW_BLOCK)]
         cases = [{name: numbers[block] for name, numbers in rows.items()} for block in blocks]
         return np.concatenate([self._block(case) for case in cases])
 
-    def _block(self, rows: Rows) -> FloatArray:
+    def _block(self, rows: RealisationRows) -> FloatArray:
         motion = kinematics.solve(self._design(rows), SCAN)
         reach, swing = leg_reach(motion.design, motion.points["pedal"].value), np.ptp(motion.joint_angle.hip, axis=-1)
         turns = batch_turning(motion.design, reach, np.atleast_1d(swing)).turns  # as every command decides
         count = len(next(iter(rows.values())))
         return np.where(turns, np.broadcast_to(self._mean(motion, rows), count), np.nan)
 
-    def _design(self, rows: Rows) -> Design:
+    def _design(self, rows: RealisationRows) -> Design:
         parts = ((DIMENSIONS, self.drawn.dimensions), (RIDER, self.drawn.legs))
         values = {name: drawn[rows[key], None] for key, part in parts if key in rows for name, drawn in part.items()}
         return replaced(self.result.design, values)
 
-    def _mean(self, motion: Motion, rows: Rows) -> FloatArray:
+    def _mean(self, motion: Motion, rows: RealisationRows) -> FloatArray:
         """Mean power along a motion, W, shape (rows,) or (1,)."""
         torque, cadence, drawn = self.result.torque, self.result.cadence, self.drawn
         best = np.concatenate([*self.result.moments.coefficients])[None]

@@ -25,11 +25,16 @@ def against(what: str, options: PrintOptions) -> int:
 
 
 def _published(options: PrintOptions) -> None:
-    from fes_mj.validation.published import FILE, RULE, counts, rows
+    from fes_mj.validation.published import PUBLISHED_FILE, RULE, counts, rows
 
     records = [row.record() for row in track(rows(), "predicting", options.silent)]
     options.show(
-        lambda: {"rule": RULE, "verdicts": counts(records), "rows": records, "provenance": provenance([FILE])},
+        lambda: {
+            "rule": RULE,
+            "verdicts": counts(records),
+            "rows": records,
+            "provenance": provenance([PUBLISHED_FILE]),
+        },
         lambda: _print_rows(records, RULE, counts(records)),
     )
 

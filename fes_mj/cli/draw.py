@@ -13,7 +13,7 @@ from fes_mj.cli.tables import heading
 from fes_mj.common.console import conclude, print_table, say
 from fes_mj.common.errors import InputError, require_extra
 from fes_mj.common.writing import require_results, write_results
-from fes_mj.linkage.clearance import NEAR
+from fes_mj.linkage.clearance import SHOWN_GAP
 from fes_mj.linkage.design_file import load_design
 from fes_mj.linkage.plates import hole_places
 from fes_mj.statics.turn import quasi_static
@@ -121,7 +121,7 @@ def _print(made: Build) -> None:
     ]
     print_table("Pins", ("joint", "diameter, mm", "riding, N", "pedal load, N"), pins)
     gaps = [(gap.pair, f"{1e3 * gap.distance:.1f}", f"{np.degrees(gap.crank_angle):.0f}") for gap in side.near]
-    head = f"Clearances over the turn below {1e3 * NEAR:g} mm; negative: passing beside each other"
+    head = f"Clearances over the turn below {1e3 * SHOWN_GAP:g} mm; negative: passing beside each other"
     print_table(head, ("pair", "least, mm", "at crank deg"), gaps)
     _print_making(_content(made), made.design.linkage.gear_ratio)
     if missing := dict.fromkeys(part for _, part in side.unknown):

@@ -33,12 +33,12 @@ from fes_mj.common.errors import InputError, require_extra
 from fes_mj.common.text import printable
 from fes_mj.common.units import RPM
 from fes_mj.common.writing import require_writable, write_text
-from fes_mj.fit.population import GRADES, STEPS, PopulationFit, fit_population
+from fes_mj.fit.population import FIT_STEPS, GRADES, PopulationFit, fit_population
 from fes_mj.fit.seat import SeatFit, fit_seat, seat_text
 from fes_mj.fit.seats import SeatLimits
 from fes_mj.linkage.design import Design, Rider
 from fes_mj.linkage.design_file import design_toml, load_design
-from fes_mj.linkage.riders import SAMPLES, populations
+from fes_mj.linkage.riders import PEOPLE_PER_SEX, populations
 from fes_mj.muscles.riders import load_riders
 
 _OF_RIDER, _OF_SEAT = Group("Rider"), Group("Seat")
@@ -135,7 +135,7 @@ def fit(
     dims: Dims = "identified",
     out: Out | None = None,
     population: Annotated[bool, Parameter(group=_POPULATION, negative="")] = False,
-    samples: Annotated[PeopleOfEachSex, Parameter(group=_POPULATION)] = SAMPLES,
+    samples: Annotated[PeopleOfEachSex, Parameter(group=_POPULATION)] = PEOPLE_PER_SEX,
     seed: Annotated[Seed, Parameter(group=_POPULATION)] = 0,
     plot: Annotated[Path | None, Parameter(group=_POPULATION)] = None,
 ) -> None:
@@ -162,7 +162,7 @@ def fit(
         if plot:
             require_extra("report", "matplotlib")
         require_writable(plot, "the picture", ".png", inputs)
-        with progress_bar(f"{loaded.name}, riders", STEPS, options.silent) as advance:
+        with progress_bar(f"{loaded.name}, riders", FIT_STEPS, options.silent) as advance:
             people = fit_population(
                 loaded, joint_moments, limits=limits, samples=samples, seed=seed, done=lambda: advance(1)
             )

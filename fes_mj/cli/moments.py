@@ -13,7 +13,7 @@ from fes_mj.common.units import RPM
 from fes_mj.common.writing import PICTURES, require_replaceable, require_writable, write_files
 from fes_mj.moments.files import load_moments, measurement_toml, moments_csv
 from fes_mj.moments.identification import identify as identify_tricycle
-from fes_mj.moments.joint_moments import GROUPS, JointMoments
+from fes_mj.moments.joint_moments import RIDER_GROUPS, JointMoments
 from fes_mj.moments.measurement import Measurement, load_measurement, measured_files
 from fes_mj.muscles.identification import STAGES
 from fes_mj.muscles.trial import MEMBERS, fit_muscles as fit_riders, quantities
@@ -42,7 +42,7 @@ def moments(
         fit_muscles: Find muscles that may have given these moments, and write them with -o (.npz) for `--drive muscles
             --muscles`; takes a minute.
     """
-    path = None if file in GROUPS else Path(file)
+    path = None if file in RIDER_GROUPS else Path(file)
     if fit_muscles and not path:
         raise InputError(f"--fit-muscles: the muscles of {file} are known: --drive muscles --group {file}")
     if fit_muscles and not out:

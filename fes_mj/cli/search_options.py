@@ -15,7 +15,7 @@ from fes_mj.cli.drive import DriveOptions
 from fes_mj.cli.options import Flag, Jobs, MomentsOptions, PeopleOfEachSex, PrintOptions, Seed, needs, refuse_beside
 from fes_mj.common.errors import require_extra
 from fes_mj.common.provenance import provenance
-from fes_mj.linkage.riders import SAMPLES
+from fes_mj.linkage.riders import PEOPLE_PER_SEX
 from fes_mj.muscles.rules import BEST
 
 Methods = Literal["differential-evolution", "cma-es", "nsga-ii", "random-pursuit"]
@@ -81,7 +81,7 @@ class SearchOptions(PrintOptions, MomentsOptions):
     ripple_limit: Annotated[float | None, Parameter(validator=Number(gt=0, lte=200))] = None
     caution: Annotated[float, Parameter(validator=Number(gte=0, lte=10))] = 0.0
     riders: Annotated[Literal["one", "population", "population-p10"], Parameter(group=_PEOPLE)] = "one"
-    samples: Annotated[PeopleOfEachSex, Parameter(group=_PEOPLE)] = SAMPLES
+    samples: Annotated[PeopleOfEachSex, Parameter(group=_PEOPLE)] = PEOPLE_PER_SEX
     sample_seed: Annotated[Seed, Parameter(group=_PEOPLE)] = 0
     smooth: Annotated[bool, Parameter(group=("Parameters", _FRONT), negative="")] = False
     problem: Path | None = None

@@ -109,9 +109,9 @@ def _check_files(report: Path | None, junit: Path | None, video: Path | None, in
 
 
 def _run_checks(cases: list[VerificationCase], quick: bool, options: RunOptions) -> list[Check]:
-    from fes_mj.verification.suite import FULL, benchmarks, quick_groups, verify
+    from fes_mj.verification.suite import FULL_CHECKS, benchmarks, quick_groups, verify
 
-    groups = quick_groups(options.legs) if quick else FULL
+    groups = quick_groups(options.legs) if quick else FULL_CHECKS
     runs = [verify(case, (group,)) for case in cases for group in groups] + [benchmarks()]
     return [check for run in track(runs, "checking", options.silent) for check in run]
 

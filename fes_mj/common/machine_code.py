@@ -11,7 +11,7 @@ from typing import Any, TypeVar, cast
 import numpy as np
 
 Function = TypeVar("Function", bound=Callable[..., Any])
-Value = TypeVar("Value")
+Structure = TypeVar("Structure")
 
 COMPILED = find_spec("numba") is not None
 
@@ -60,15 +60,15 @@ def _njit(function: Function, **options: bool) -> Function:
     return made
 
 
-def readable(value: Value) -> Value:
+def readable(value: Structure) -> Structure:
     """A named tuple of arrays as these functions read it: `in_lists` where Python runs them."""
     return value if COMPILED else in_lists(value)
 
 
-def in_lists(value: Value) -> Value:
+def in_lists(value: Structure) -> Structure:
     """A named tuple of arrays with lists in their place, which Python reads ten times faster."""
     if isinstance(value, np.ndarray):
-        return cast("Value", value.tolist())
+        return cast("Structure", value.tolist())
     if isinstance(value, tuple) and hasattr(value, "_fields"):
-        return cast("Value", type(value)(*map(in_lists, value)))
+        return cast("Structure", type(value)(*map(in_lists, value)))
     return value

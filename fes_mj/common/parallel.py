@@ -14,8 +14,8 @@ from typing import Any, NamedTuple, TypeVar
 from fes_mj.common.errors import InputError, require_extra, require_within
 
 Task = TypeVar("Task")
-Result = TypeVar("Result")
-PATIENCE = "5s"  # for a scheduler to answer
+TaskResult = TypeVar("TaskResult")
+SCHEDULER_PATIENCE = "5s"  # for a scheduler to answer
 
 
 class Workers(NamedTuple):
@@ -29,8 +29,8 @@ HERE = Workers()  # this process
 
 
 def run_tasks(
-    function: Callable[[Task], Result], tasks: Sequence[Task], workers: Workers = HERE
-) -> Iterator[tuple[int, Result]]:
+    function: Callable[[Task], TaskResult], tasks: Sequence[Task], workers: Workers = HERE
+) -> Iterator[tuple[int, TaskResult]]:
     """Yield (index, function(task)) as tasks finish, in any order.
 
     A task should take seconds. Raises InputError for a scheduler that does not answer, for fewer than one job, and if
@@ -58,7 +58,7 @@ def run_tasks(
             raise
 
 
-def _numbered(function: Callable[[Task], Result], index: int, task: Task) -> tuple[int, Result]:
+def _numbered(function: Callable[[Task], TaskResult], index: int, task: Task) -> tuple[int, TaskResult]:
     return index, function(task)
 
 
@@ -86,7 +86,7 @@ def _backend(joblib: Any, workers: Workers) -> AbstractContextManager[Any]:
         return here
     distributed = require_extra("cluster", "distributed")
     try:
-        client = distributed.Client(workers.cluster, timeout=PATIENCE, set_as_default=False)
+        client = distributed.Client(workers.cluster, timeout=SCHEDULER_PATIENCE, set_as_default=False)
     except (OSError, TimeoutError, ValueError) as error:
         raise InputError(
             f"--cluster {workers.cluster}: no Dask scheduler answers there ({type(error).__name__}); "

@@ -23,7 +23,7 @@ MOMENTS = ("#6b2fb3", "#7a4a1e", "#00695c")
 # The paper's designs side by side: the traditional one, crank-rockers green, coupler-driven ones red
 BY_DESIGN = {"trt": "#20242c", "r1": "#7fb069", "r2": "#2f6b3c", "d1": "#c01c28", "d2": "#e8899b"}
 # Parts of a whole, stacked, the last for what is left
-PARTS = ("#1f4fd8", "#8a8f98", "#c01c28", "#d97a00", "#3a7d44", "#c4189a", "#d9dce1")
+PART_COLOURS = ("#1f4fd8", "#8a8f98", "#c01c28", "#d97a00", "#3a7d44", "#c4189a", "#d9dce1")
 GOOD, BAD = "#1a7f37", "#c01c28"
 INK, FAINT = "#20242c", "#5a606c"
 

@@ -16,7 +16,9 @@ if sys.platform != "win32":
     import fcntl
 
 TEMPORARY = ".fes_mj-"  # how the names of temporary files begin
-RECORD = ".fes_mj.sha256"  # in a folder: SHA-256, a line each, of what fes_mj wrote there without having been named
+FOLDER_RECORD = (
+    ".fes_mj.sha256"  # in a folder: SHA-256, a line each, of what fes_mj wrote there without having been named
+)
 PICTURES = (".png", ".svg")
 PAGES = (".svg", ".pdf", ".png")
 
@@ -93,7 +95,7 @@ def require_writable(
 def require_replaceable(paths: Iterable[Path], what: str, inputs: Collection[Path] = ()) -> None:
     """As require_writable, for files that the user did not name but that are written beside one or into a folder.
 
-    One that is there is replaced only while it is as fes_mj wrote it: its SHA-256 stands in the folder's RECORD.
+    One that is there is replaced only while it is as fes_mj wrote it: its SHA-256 stands in the folder's FOLDER_RECORD.
     """
     for path in paths:
         require_writable(path, what, inputs=inputs)
@@ -131,7 +133,7 @@ def _digest(content: bytes) -> str:
 
 def _recorded(folder: Path) -> list[str]:
     """SHA-256 of what fes_mj wrote in a folder without having been given its name."""
-    record = folder / RECORD
+    record = folder / FOLDER_RECORD
     return record.read_text(errors="replace").split() if record.is_file() else []
 
 
@@ -199,14 +201,14 @@ def write_text(path: Path, text: str) -> None:
 def write_files(contents: Mapping[Path, str | bytes], unnamed: Collection[Path] = ()) -> None:
     """Write files that belong together: all appear whole, or none does and what stood there still stands.
 
-    unnamed: those of them whose names fes_mj chose; they go into their folders' RECORD, by which require_replaceable
-    knows them again. Raises InputError as replacing.
+    unnamed: those of them whose names fes_mj chose; they go into their folders' FOLDER_RECORD, by which
+    require_replaceable knows them again. Raises InputError as replacing.
     """
     data = {path: content.encode() if isinstance(content, str) else content for path, content in contents.items()}
     records = {}
     for folder in {path.parent for path in unnamed}:
         own = [_digest(data[path]) for path in unnamed if path.parent == folder]
-        records[folder / RECORD] = "\n".join(dict.fromkeys([*_recorded(folder), *own, ""])).encode()
+        records[folder / FOLDER_RECORD] = "\n".join(dict.fromkeys([*_recorded(folder), *own, ""])).encode()
     data = records | data  # should a kill come between, what stands there is known, whether new or old
     with ExitStack() as stack:
         new = {path: stack.enter_context(temporary_beside(path)) for path in data}

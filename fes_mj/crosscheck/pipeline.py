@@ -18,7 +18,7 @@ from fes_mj.moments.torque_map import TorqueMap
 from fes_mj.muscles.drive import Muscles
 from fes_mj.simulation.appearance import Spec
 from fes_mj.simulation.bearings import add_friction
-from fes_mj.simulation.bench import PLAIN, BenchOptions, Simulation, simulate
+from fes_mj.simulation.bench import PLAIN_BENCH, BenchOptions, Simulation, simulate
 from fes_mj.simulation.mjcf import REAL, ModelOptions, Physics, build_mjcf
 from fes_mj.simulation.time_step import steps_per_turn
 from fes_mj.statics.drive import Drive, driven_speed, torque_source
@@ -86,7 +86,7 @@ class Pipeline(Setup):
             add_friction(spec, self.design.linkage.architecture, LEGS[self.legs], self.friction.moments)
 
     def run(
-        self, options: BenchOptions = PLAIN, *, timestep: float | None = None, turns: float | None = None
+        self, options: BenchOptions = PLAIN_BENCH, *, timestep: float | None = None, turns: float | None = None
     ) -> Simulation:
         """Simulate; timestep (s) and turns instead of the setup's own. Raises UnstableError if it breaks down."""
         return simulate(

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fes_mj.common.arrays import ComplexArray
-from fes_mj.drawing.pen import TEXT, Pen, seen
+from fes_mj.drawing.pen import TEXT_HEIGHT, Pen, seen
 from fes_mj.linkage.clearance import Gap
 from fes_mj.linkage.design import BODIES
 from fes_mj.linkage.kinematics import FULL_TURN
@@ -15,7 +15,7 @@ from fes_mj.linkage.shapes import back_to_front
 from fes_mj.statics.sizes import Build
 
 SCALES = (1.0, 0.5, 0.2, 0.1, 0.05, 0.02)  # ISO 5455
-LINE = 1.8 * TEXT  # mm from a line of text to the next
+LINE = 1.8 * TEXT_HEIGHT  # mm from a line of text to the next
 FIXED_POINTS = ("crank_centre", "hip", "rocker_pivot")
 
 
@@ -67,10 +67,10 @@ def mechanism(pen: Pen, build: Build, gaps: Sequence[Gap], box: Box) -> None:
         own.cross(cross, 4.0)
     ends = [[*map(seen, gap.ends)] for gap in gaps]
     middles = [sum(pair) / 2 for pair in ends]
-    for number, place in enumerate(_beside(middles, crosses, TEXT / scale)):
+    for number, place in enumerate(_beside(middles, crosses, TEXT_HEIGHT / scale)):
         leader = place - middles[number]
         own.line(ends[number], "DIMENSIONS")
-        own.line([middles[number], place - TEXT / scale * leader / abs(leader)], "DIMENSIONS")
+        own.line([middles[number], place - TEXT_HEIGHT / scale * leader / abs(leader)], "DIMENSIONS")
         own.text(str(number + 1), place, align="MIDDLE_CENTER")
     angles = [f"{np.degrees(FULL_TURN[place]):.1f} deg" for place in (bent, stretched)]
     pen.text(

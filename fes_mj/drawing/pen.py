@@ -18,10 +18,10 @@ from ezdxf.filemanagement import new
 
 from fes_mj.common.arrays import ComplexArray
 
-TEXT = 2.5  # mm, of letters
+TEXT_HEIGHT = 2.5  # mm, of letters
 FONT = "DejaVuSans.ttf"
 # Name -> AutoCAD colour, line width in 1/100 mm, kind of line
-LAYERS = {
+PEN_LAYERS = {
     "OUTLINE": (7, 50, "CONTINUOUS"),
     "HOLES": (7, 35, "CONTINUOUS"),
     "CENTRE": (8, 18, "CENTER2"),
@@ -32,7 +32,8 @@ LAYERS = {
     "FRAME": (7, 50, "CONTINUOUS"),
 }
 _DIMENSION = {
-    "dimtxt": TEXT, "dimasz": TEXT, "dimexo": 1.0, "dimexe": 1.5, "dimgap": 0.8, "dimtad": 1, "dimtih": 0, "dimtoh": 0,
+    "dimtxt": TEXT_HEIGHT, "dimasz": TEXT_HEIGHT, "dimexo": 1.0, "dimexe": 1.5, "dimgap": 0.8,
+    "dimtad": 1, "dimtih": 0, "dimtoh": 0,
     "dimlunit": 2, "dimdec": 2, "dimzin": 8, "dimdsep": ord("."), "dimtxsty": "PLAIN", "dimscale": 1.0, "dimtmove": 0,
     "dimlwd": 18, "dimlwe": 18,
 }  # fmt: skip
@@ -57,7 +58,7 @@ class Pen:
         with _without_date():
             document = new("R2010", setup=["linetypes"], units=units.MM)
         document.styles.new("PLAIN", dxfattribs={"font": FONT})
-        for name, (colour, width, line) in LAYERS.items():
+        for name, (colour, width, line) in PEN_LAYERS.items():
             document.layers.add(name, color=colour, lineweight=width, linetype=line)
         style = document.dimstyles.new("PLAIN")
         for name, value in _DIMENSION.items():
@@ -94,7 +95,9 @@ class Pen:
             ends = [centre - arm / self.scale, centre + arm / self.scale]
             self._space.add_line(*map(self._place, ends), dxfattribs={"layer": "CENTRE"})
 
-    def text(self, text: str, place: complex, height: float = TEXT, align: str = "LEFT", layer: str = "TEXT") -> None:
+    def text(
+        self, text: str, place: complex, height: float = TEXT_HEIGHT, align: str = "LEFT", layer: str = "TEXT"
+    ) -> None:
         entity = self._space.add_text(text, height=height, dxfattribs={"layer": layer, "style": "PLAIN"})
         entity.set_placement(self._place(place), align=TextEntityAlignment[align])
 

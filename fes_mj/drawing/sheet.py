@@ -10,14 +10,14 @@ from fes_mj.common.text import printable
 from fes_mj.common.units import RPM
 from fes_mj.drawing.mechanism import FIXED_POINTS, LINE, SCALES, Box, largest_scale, mechanism, ratio
 from fes_mj.drawing.part import FIRST, draw_part, extent, notes
-from fes_mj.drawing.pen import TEXT, Pen
+from fes_mj.drawing.pen import TEXT_HEIGHT, Pen
 from fes_mj.linkage.clearance import CLEARANCE, Gap
 from fes_mj.linkage.plates import Plate
 from fes_mj.statics.materials import pin_stock
 from fes_mj.statics.sizes import Build
 
 WIDTH, HEIGHT, BORDER, BINDING = 594.0, 420.0, 10.0, 20.0  # mm: A2, ISO 5457
-ROOM = FIRST + 6.0  # mm around a link for its dimensions
+DIMENSION_ROOM = FIRST + 6.0  # mm around a link for its dimensions
 _LINKS, _UNDER, _GAP = 344.0, 110.0, 5.0  # mm: where links begin from the left, how high tables reach, between boxes
 _TITLE, _NAMES, _ROW = 180.0, 24.0, 7.0  # mm: width of the title block (ISO 7200), of its names, height of a row
 _LISTED = 6  # clearances
@@ -46,7 +46,7 @@ def _links(pen: Pen, build: Build, box: Box) -> None:
     for plate, scale in zip(plates, scales, strict=True):
         low, high = extent(plate)
         below = _lines(pen, notes(build, plate, ratio(scale)), complex(box.left, top))
-        corner = complex(box.left + ROOM, below - ROOM - scale * (high - low).imag)
+        corner = complex(box.left + DIMENSION_ROOM, below - DIMENSION_ROOM - scale * (high - low).imag)
         draw_part(pen.moved(corner - scale * low, scale), plate)
         top -= _height(plate, scale) + spare
 
@@ -54,13 +54,13 @@ def _links(pen: Pen, build: Build, box: Box) -> None:
 def _height(plate: Plate, scale: float) -> float:
     """Of a link with its notes and dimensions, mm."""
     low, high = extent(plate)
-    return scale * float((high - low).imag) + 2 * ROOM + LINE * (1 + len(plate.holes))
+    return scale * float((high - low).imag) + 2 * DIMENSION_ROOM + LINE * (1 + len(plate.holes))
 
 
 def _scales(plates: Sequence[Plate], room: complex) -> list[float]:
     """The largest in which all links fit below each other: the tallest is made smaller as long as they do not."""
     wide = (extent(plate)[1] - extent(plate)[0] for plate in plates)
-    scales = [largest_scale(size.real + 0j, room - 2 * ROOM) for size in wide]
+    scales = [largest_scale(size.real + 0j, room - 2 * DIMENSION_ROOM) for size in wide]
     while sum(map(_height, plates, scales)) > room.imag:
         heights = [*map(_height, plates, scales)]
         tallest = heights.index(max(heights))
@@ -117,7 +117,7 @@ def _title(pen: Pen, build: Build) -> None:
         below = top - number * _ROW
         pen.line([complex(left, below), complex(right, below)], "TEXT")
         pen.text(name, complex(left + 2, below + 2))
-        pen.text(text, complex(left + _NAMES + 2, below + 2), height=TEXT if number > 1 else 1.6 * TEXT)
+        pen.text(text, complex(left + _NAMES + 2, below + 2), height=TEXT_HEIGHT if number > 1 else 1.6 * TEXT_HEIGHT)
 
 
 def pictures(pen: Pen) -> list[bytes]:

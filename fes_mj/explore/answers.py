@@ -23,7 +23,7 @@ from fes_mj.linkage.legs import LEGS
 from fes_mj.linkage.riders import populations
 from fes_mj.linkage.turning import turning
 from fes_mj.moments.files import load_moments
-from fes_mj.moments.joint_moments import GROUPS, JointMoments
+from fes_mj.moments.joint_moments import RIDER_GROUPS, JointMoments
 from fes_mj.muscles.drive import Muscles, load_muscles
 from fes_mj.optimization.limits import load_limits
 from fes_mj.riding.ride import TRANSMISSIONS
@@ -45,7 +45,7 @@ class Answers:
 
     def __init__(self, design: Design, moments: JointMoments, drive: str = DRIVES[0]) -> None:
         self.design, self.chosen, self.drive = design, moments.name, drive
-        self.shared = {group: load_moments(group) for group in GROUPS} | {moments.name: moments}
+        self.shared = {group: load_moments(group) for group in RIDER_GROUPS} | {moments.name: moments}
         self.uploads = Uploads()
         self.reader: Callable[..., Any] = call  # a server's reads elsewhere
         names = ("start", "turn", "making", "numbers", "change", "save", "model", "open-design", "open-moments")

@@ -14,7 +14,7 @@ from fes_mj.common.errors import InputError
 from fes_mj.explore.turn import DIGITS, Number, shown
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.legs import all_legs
-from fes_mj.moments.joint_moments import GROUPS, JointMoments
+from fes_mj.moments.joint_moments import RIDER_GROUPS, JointMoments
 from fes_mj.muscles.riders import load_riders
 from fes_mj.muscles.rules import BEST
 from fes_mj.statics.muscle_static import MuscleStatic
@@ -55,8 +55,8 @@ def by_muscles(design: Design, moments: JointMoments, legs: int = 1) -> dict[str
 
 def require_muscles(group: str) -> None:
     """Raise InputError for moments of whose riders no muscles are known."""
-    if group not in GROUPS:
-        raise InputError(f"no muscles of {group} are known, only of {' and '.join(GROUPS)}")
+    if group not in RIDER_GROUPS:
+        raise InputError(f"no muscles of {group} are known, only of {' and '.join(RIDER_GROUPS)}")
 
 
 @lru_cache(maxsize=16)

@@ -13,7 +13,7 @@ from fes_mj.common.units import turns_per_second
 from fes_mj.fit.search import best_seats, scores
 from fes_mj.fit.seats import OUTSIDE_EQUAL, SEAT_LIMITS, SeatLimits, Seats, losses, outside_range
 from fes_mj.linkage.design import Design
-from fes_mj.linkage.riders import SAMPLES, Legs, Population, populations
+from fes_mj.linkage.riders import PEOPLE_PER_SEX, Legs, Population, populations
 from fes_mj.linkage.variables import crank_speed
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.statics.cycles import cycles
@@ -59,7 +59,7 @@ class Ridden(NamedTuple):
         return dict(zip(GRADES, (self.turns, rides, inside), strict=True))
 
 
-class Riders(NamedTuple):
+class FittedPeople(NamedTuple):
     """A sample of people, and what becomes of them with the seat as drawn and with the best seat."""
 
     people: Population
@@ -80,7 +80,7 @@ class PopulationFit(Brief):
     moments: JointMoments
     drawn: PowerMap
     map: PowerMap
-    riders: dict[str, Riders]
+    riders: dict[str, FittedPeople]
     map_error: float
 
     @property
@@ -105,7 +105,7 @@ class PopulationFit(Brief):
         return content | {"map_error_W": self.map_error}
 
 
-STEPS = _NODES + len(PEOPLE)  # how often fit_population calls `done`
+FIT_STEPS = _NODES + len(PEOPLE)  # how often fit_population calls `done`
 
 
 def fit_population(
@@ -113,11 +113,11 @@ def fit_population(
     moments: JointMoments,
     *,
     limits: SeatLimits = SEAT_LIMITS,
-    samples: int = SAMPLES,
+    samples: int = PEOPLE_PER_SEX,
     seed: int = 0,
     done: Callable[[], None] = lambda: None,
 ) -> PopulationFit:
-    """Sample so many men and women; `done` is called STEPS times.
+    """Sample so many men and women; `done` is called FIT_STEPS times.
 
     Raises AssemblyError for a linkage that cannot turn whoever sits where, InputError for a cadence that cannot be run,
     a batch, no samples and a negative seed.
@@ -143,7 +143,7 @@ def fit_population(
         offered = _offered(people, thigh, shank, seats)
         offered[:, 0] = [min(max(0.0, low), high) for low, high in limits]
         chosen = _chosen(design, people, offered, table)
-        riders[who] = Riders(
+        riders[who] = FittedPeople(
             populations()[PEOPLE[who]],
             people,
             _ridden(design, people.thigh, people.shank, _DRAWN, table),

@@ -19,9 +19,9 @@ from fes_mj.linkage.plates import Plate
 from fes_mj.linkage.shapes import bars
 
 CLEARANCE = 0.005  # m, wanted between what passes each other
-NEAR = 0.1  # m: gaps up to this are shown
+SHOWN_GAP = 0.1  # m: gaps up to this are shown
 WASHER = 0.001  # m between two layers
-FAR = 10.0  # m: farther than anything reaches
+ROAD_REACH = 10.0  # m: farther than anything reaches
 # Links and legs pass beside the tube and the chainring, which are in the middle, and feet beside the wheel.
 FIXED = ("seat", "tube", "chainring", "wheel", "ground")
 
@@ -156,8 +156,8 @@ class Side:
 
     @property
     def near(self) -> list[Gap]:
-        """Those below NEAR, the nearest first."""
-        return sorted((gap for gap in self.gaps if gap.distance < NEAR), key=lambda gap: gap.distance)
+        """Those below SHOWN_GAP, the nearest first."""
+        return sorted((gap for gap in self.gaps if gap.distance < SHOWN_GAP), key=lambda gap: gap.distance)
 
     @property
     def unknown(self) -> list[tuple[str, str]]:
@@ -191,4 +191,4 @@ def _of_frame(design: Design) -> Iterator[Shape]:
         yield Shape("wheel", "", (frame.wheel_centre,), frame.wheel_diameter / 2)
     if frame.ground_height is not None:
         top = 1j * frame.ground_height
-        yield Shape("ground", "", (top - FAR, top - 2j * FAR, top + FAR), 0.0)
+        yield Shape("ground", "", (top - ROAD_REACH, top - 2j * ROAD_REACH, top + ROAD_REACH), 0.0)

@@ -17,7 +17,7 @@ PRESETS = (
     "cord injury"
 )
 _PRESET = re.compile(r"ansur-(man|woman)-p([1-9][0-9]?)(-sci)?", re.ASCII)
-SAMPLES = 1000  # people of each sex: a share is right to 1.6 % of the sample, one standard deviation
+PEOPLE_PER_SEX = 1000  # people of each sex: a share is right to 1.6 % of the sample, one standard deviation
 _FILE = DATA / "riders.toml"
 _SCORE_95 = 1.6448536269514722  # of the standard normal distribution, percentile 95
 # Of the median stature: from below the smallest to above the tallest of 6,068 adults.

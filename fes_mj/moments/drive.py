@@ -14,10 +14,10 @@ from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.reference_tricycle import ReferenceTricycle
 from fes_mj.moments.torque_map import TABLE_SIZE, torque_map
 
-POINTS = TABLE_SIZE  # crank angles of a table over a turn
+DRIVE_POINTS = TABLE_SIZE  # crank angles of a table over a turn
 
 
-def drive(design: Design, moments: JointMoments, points: int = POINTS) -> PerJoint[FloatArray]:
+def drive(design: Design, moments: JointMoments, points: int = DRIVE_POINTS) -> PerJoint[FloatArray]:
     """Moments of one leg of a design over so many uniform crank angles of a turn, N m, shape (points,)."""
     return driven(solve(design, uniform_turn(points)), moments)
 

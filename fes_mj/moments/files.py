@@ -15,10 +15,10 @@ from fes_mj.common.units import RPM
 from fes_mj.common.writing import csv_text
 from fes_mj.linkage.design_file import design_toml
 from fes_mj.moments.fourier import fourier
-from fes_mj.moments.joint_moments import COLUMNS, GROUPS, JointMoments
+from fes_mj.moments.joint_moments import COLUMNS, RIDER_GROUPS, JointMoments
 
 _FOLDER = DATA / "moments"
-DEGREES = np.arange(360.0)  # crank angles of a rider group's curves, from top dead centre
+CURVE_DEGREES = np.arange(360.0)  # crank angles of a rider group's curves, from top dead centre
 
 
 def load_moments(source: str | Path = "p1p2", left: str | Path | None = None) -> JointMoments:
@@ -31,7 +31,7 @@ def load_moments(source: str | Path = "p1p2", left: str | Path | None = None) ->
     """
     if left is not None:
         return replace(load_moments(source), left=load_moments(left))
-    if source in GROUPS:
+    if source in RIDER_GROUPS:
         return _of_group(str(source))
     from fes_mj.moments.measurement import load_measurement  # much to read of which a rider group needs nothing
 
@@ -48,7 +48,7 @@ def _of_group(name: str) -> JointMoments:
 def is_of_group(moments: JointMoments) -> bool:
     """Whether moments are those of a rider group that ship, and not others of its name."""
     covariance = moments.covariance
-    shipped = load_moments(moments.name).covariance if moments.name in GROUPS else None
+    shipped = load_moments(moments.name).covariance if moments.name in RIDER_GROUPS else None
     return covariance is not None and shipped is not None and np.array_equal(covariance, shipped)
 
 
@@ -67,7 +67,7 @@ def measurement_toml(moments: JointMoments, data: Path) -> str:
 
 def moments_csv(moments: JointMoments) -> str:
     """The plain CSV of moments, a row a degree."""
-    return csv_text(dict(zip(COLUMNS, (DEGREES, *moments.at(np.radians(DEGREES))), strict=True)))
+    return csv_text(dict(zip(COLUMNS, (CURVE_DEGREES, *moments.at(np.radians(CURVE_DEGREES))), strict=True)))
 
 
 def sampled_coefficients(group: str) -> FloatArray:
@@ -88,6 +88,6 @@ def sampled_moments(group: str, count: int | None = None) -> list[JointMoments]:
 
 def moments_of(coefficients: FloatArray, name: str) -> JointMoments:
     """The curves of Fourier coefficients, knee's then hip's, N m, shape (98,), at every degree."""
-    angle = np.radians(DEGREES)
+    angle = np.radians(CURVE_DEGREES)
     knee, hip = (fourier(angle) @ part for part in np.split(coefficients, 2))
     return JointMoments(name, angle, knee, hip)

@@ -14,7 +14,7 @@ from fes_mj.linkage.kinematics import uniform_turn
 from fes_mj.moments.fourier import fit, fourier
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE, ReferenceTricycle
 
-GROUPS = ("p1p2", "p1p3")
+RIDER_GROUPS = ("p1p2", "p1p3")
 COLUMNS = ("crank_angle_deg", "knee_Nm", "hip_Nm")
 _NEGLIGIBLE = 1e-9  # part of the largest variance of moments; directions below it are rounding
 MEASURED_POINTS = 720  # of sums over the measured turn: exact for the products of harmonics that matter

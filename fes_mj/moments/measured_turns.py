@@ -16,7 +16,7 @@ from fes_mj.moments.conventions import AngleSense, Convention, angle_sense
 from fes_mj.moments.crank_angle import TimedTurn, timed_turns
 from fes_mj.moments.measurement_file import ANGLE_UNITS, Description
 from fes_mj.moments.reference_tricycle import ReferenceTricycle
-from fes_mj.moments.tables import OPENSIM, Table, load_table
+from fes_mj.moments.tables import OPENSIM, TextTable, load_table
 from fes_mj.moments.trial import by_crank, in_order, times
 from fes_mj.moments.turn import Turn
 
@@ -70,7 +70,7 @@ def measured_turns(description: Description) -> Recording:
     return recording
 
 
-def _trials(description: Description, number: int, path: Path) -> Iterator[tuple[tuple[str, str], Table]]:
+def _trials(description: Description, number: int, path: Path) -> Iterator[tuple[tuple[str, str], TextTable]]:
     """The trials of a file, each with the name of its rider and its own."""
     columns = description.columns
     table = load_table(path, WHAT, (*columns.values(), *description.pedal_force))
@@ -86,7 +86,7 @@ def _trials(description: Description, number: int, path: Path) -> Iterator[tuple
         yield ("", str(number)), table
 
 
-def _by_crank(description: Description, recording: Recording, table: Table, source: tuple[str, str]) -> list[Turn]:
+def _by_crank(description: Description, recording: Recording, table: TextTable, source: tuple[str, str]) -> list[Turn]:
     """Turns of a table with a crank angle: of a trial over time each, of other rows one or as many as they show."""
     crank, unit = description.columns["crank"], _angle_unit(description, table)
     used = _value_columns(description)
@@ -113,7 +113,7 @@ def _by_crank(description: Description, recording: Recording, table: Table, sour
 
 
 def _by_knee(
-    description: Description, recording: Recording, table: Table, kinematics: Path, source: tuple[str, str]
+    description: Description, recording: Recording, table: TextTable, kinematics: Path, source: tuple[str, str]
 ) -> list[Turn]:
     """Turns of a trial, from one dead centre of the knee to the next, at the crank angles that the knee tells."""
     column = description.columns["knee_angle"]
@@ -149,7 +149,7 @@ def _by_knee(
 
 
 def _require_rows(
-    table: Table, count: int, turn: TimedTurn, time: FloatArray, moved: FloatArray, kinematics: Path
+    table: TextTable, count: int, turn: TimedTurn, time: FloatArray, moved: FloatArray, kinematics: Path
 ) -> None:
     """Refuse moments that are too far apart for the turns of their kinematics."""
     if count < _LEAST_ROWS:
@@ -160,7 +160,7 @@ def _require_rows(
         )
 
 
-def bounded(table: Table, column: str, limit: float, scale: float = 1.0) -> FloatArray:
+def bounded(table: TextTable, column: str, limit: float, scale: float = 1.0) -> FloatArray:
     """A column of moments or crank angles times `scale`; refused unless a leg or a crank can have every value."""
     values = scale * table.column(column)
     wrong = np.flatnonzero(np.abs(values) > limit)
@@ -179,7 +179,7 @@ def _value_columns(description: Description) -> list[str]:
     return description.pedal_force or [description.columns[joint] for joint in JOINTS]
 
 
-def _values(description: Description, table: Table) -> FloatArray:
+def _values(description: Description, table: TextTable) -> FloatArray:
     """Knee and hip moment, N m, extension positive, or the two components of the pedal force, N; shape (2, n)."""
     scale = 1.0 if description.pedal_force else description.scale
     values = np.stack([bounded(table, column, LARGEST_MOMENT, scale) for column in _value_columns(description)])
@@ -199,7 +199,7 @@ def _moments(
     return leg_moments(motion, cadence, values[0] + 1j * values[1])
 
 
-def _joint_angles(description: Description, recording: Recording, table: Table) -> dict[str, FloatArray]:
+def _joint_angles(description: Description, recording: Recording, table: TextTable) -> dict[str, FloatArray]:
     """The joint angles that a table has, rad, growing in extension, by joint; how they are counted goes on record."""
     angles = {}
     for joint in JOINTS:
@@ -218,7 +218,7 @@ def _joint_angles(description: Description, recording: Recording, table: Table) 
     return angles
 
 
-def _angle_unit(description: Description, table: Table) -> str:
+def _angle_unit(description: Description, table: TextTable) -> str:
     """Unit of the crank angle: as declared, otherwise as the header of an OpenSim file says, otherwise deg."""
     said = table.angle_unit or "deg"
     unit = description.section.choice("angle_unit", ANGLE_UNITS, said)

@@ -15,7 +15,7 @@ from fes_mj.linkage.variables import VARIABLES
 from fes_mj.moments.averaging import coefficients, declared_power_sd, mean_of, weights_on, with_power_sd, without_spikes
 from fes_mj.moments.comparison import Comparison
 from fes_mj.moments.conventions import Convention
-from fes_mj.moments.files import DEGREES, moments_of
+from fes_mj.moments.files import CURVE_DEGREES, moments_of
 from fes_mj.moments.joint_moments import COLUMNS, JointMoments
 from fes_mj.moments.measured_turns import LARGEST_ANGLE, LARGEST_MOMENT, WHAT, Recording, bounded, measured_turns
 from fes_mj.moments.measurement_file import Description
@@ -56,7 +56,7 @@ class Measurement:
     def summary(self) -> dict[str, Any]:
         """What is understood of the file, as JSON names and units it."""
         moments = self.moments
-        curves, cadence = moments.at(np.radians(DEGREES)), moments.measured_on.cadence
+        curves, cadence = moments.at(np.radians(CURVE_DEGREES)), moments.measured_on.cadence
         return {
             "knee_Nm": [curves.knee.min(), curves.knee.max()],
             "hip_Nm": [curves.hip.min(), curves.hip.max()],

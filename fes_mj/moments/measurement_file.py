@@ -27,7 +27,7 @@ _OTHERS = (
 )  # fmt: skip
 _SENSES = {"forward": 1.0, "backward": -1.0}
 ANGLE_UNITS = {"deg": math.radians(1), "rad": 1.0, "turn": 2 * math.pi, "percent": 2 * math.pi / 100}  # rad
-UNITS = {"N m": 1.0, "N mm": 1e-3}  # N m; each also per kg
+MOMENT_UNITS = {"N m": 1.0, "N mm": 1e-3}  # N m; each also per kg
 _OF_MOMENTS = ("knee", "hip", "unit", "convention", "extension")  # what a file of pedal forces does not have
 _OF_THE_CRANK = ("crank", "angle_unit", "zero", "turning", "leg")  # what a trial counted by the knee does not have
 
@@ -169,11 +169,11 @@ def _zero(section: Section, measured_on: ReferenceTricycle) -> float:
 
 def _scale(section: Section, rider: Section, measured_on: ReferenceTricycle) -> float:
     """N m per unit of the file."""
-    unit = section.choice("unit", [name + per for per in ("", "/kg") for name in UNITS], "N m")
+    unit = section.choice("unit", [name + per for per in ("", "/kg") for name in MOMENT_UNITS], "N m")
     name, per_kg, _ = unit.partition("/kg")
     if per_kg:
         rider.require(["mass"], f"{section.label('unit')} is {unit}: the moments are per kg of the rider's body mass")
-    return UNITS[name] * (measured_on.design.rider.mass if per_kg else 1.0)
+    return MOMENT_UNITS[name] * (measured_on.design.rider.mass if per_kg else 1.0)
 
 
 def read_tricycle(section: Section) -> ReferenceTricycle:

@@ -39,7 +39,7 @@ _TIME = re.compile(
 
 
 @dataclass(frozen=True)
-class Table:
+class TextTable:
     """Cells as text, read column by column.
 
     preamble: the text above the header, which is line `start`. lines: number of each row's line. rows: their cells.
@@ -84,7 +84,7 @@ class Table:
             raise InputError(f"{self.path}: line {line}: {column} is {shown!r}; it must be a finite number{way}")
         return value
 
-    def taken(self, rows: Collection[int]) -> "Table":
+    def taken(self, rows: Collection[int]) -> "TextTable":
         """The table of these rows."""
         return replace(self, lines=[self.lines[row] for row in rows], rows=[self.rows[row] for row in rows])
 
@@ -107,7 +107,7 @@ class Table:
         return "ms" if name and (name[2] or "").lower().startswith("m") else "s"
 
 
-def load_table(path: Path, what: str, wanted: Collection[str] = ()) -> Table:
+def load_table(path: Path, what: str, wanted: Collection[str] = ()) -> TextTable:
     """A table of a text file; blank lines, and lines above and below its header that are none of it, are passed over.
 
     wanted: columns; of several header lines the one counts that names most of them. Raises InputError naming file and
@@ -116,7 +116,7 @@ def load_table(path: Path, what: str, wanted: Collection[str] = ()) -> Table:
     if path.suffix.lower() == ".c3d":
         columns = c3d_columns(path)
         frames = [[*frame] for frame in zip(*columns.values(), strict=True)]
-        return Table(path, "", 1, [*columns], [*range(1, len(frames) + 1)], frames)
+        return TextTable(path, "", 1, [*columns], [*range(1, len(frames) + 1)], frames)
     text = _text(path, what)
     lines = text.splitlines()
     end = next((number for number, line in enumerate(lines, 1) if line.strip().lower() == _END_OF_HEADER), 0)
@@ -132,7 +132,7 @@ def load_table(path: Path, what: str, wanted: Collection[str] = ()) -> Table:
         if len(row) != len(header):
             raise InputError(f"{path}: line {line} has {len(row)} values; the header names {len(header)} columns")
     preamble, numbers = "\n".join(lines[: number - 1]), [line for line, _ in rows]
-    table = Table(path, preamble, number, header, numbers, [row for _, row in rows], decimal)
+    table = TextTable(path, preamble, number, header, numbers, [row for _, row in rows], decimal)
     _require_whole(table, what, text.endswith("\n"))
     return table
 
@@ -191,10 +191,10 @@ def _separator(lines: list[str]) -> str:
     return max(_SEPARATORS, key=lambda separator: scores[separator][1])
 
 
-Row = tuple[int, list[str]]
+NumberedCells = tuple[int, list[str]]
 
 
-def _split(cells: list[Row], decimal: str, wanted: Collection[str]) -> tuple[int, list[Row]]:
+def _split(cells: list[NumberedCells], decimal: str, wanted: Collection[str]) -> tuple[int, list[NumberedCells]]:
     """Where the header is, and the rows below all lines of words (units, components) that follow it."""
     width = Counter(len(row) for _, row in cells).most_common(1)[0][0] if cells else 0
 
@@ -208,7 +208,7 @@ def _split(cells: list[Row], decimal: str, wanted: Collection[str]) -> tuple[int
     return head, cells[below:]
 
 
-def _require_whole(table: Table, what: str, ended: bool) -> None:
+def _require_whole(table: TextTable, what: str, ended: bool) -> None:
     """Refuse a file that was cut off: shorter than its header says, or ending within a number."""
     declared = re.search(r"^\s*(?:nRows|datarows)[ \t]*=?[ \t]*(\d+)\s*$", table.preamble, re.IGNORECASE | re.MULTILINE)
     if declared and int(declared.group(1)) != len(table.rows):

@@ -7,13 +7,13 @@ import numpy as np
 
 from fes_mj.common.arrays import FloatArray, IntArray
 from fes_mj.common.errors import InputError
-from fes_mj.moments.tables import Table
+from fes_mj.moments.tables import TextTable
 
 TIME_UNITS = {"s": 1.0, "ms": 1e-3}  # s
 _SAME = 0.01  # of a column's range: values at one time that differ by less are one sample printed twice
 
 
-def times(table: Table, column: str, unit: str, columns: Collection[str]) -> tuple[Table, FloatArray]:
+def times(table: TextTable, column: str, unit: str, columns: Collection[str]) -> tuple[TextTable, FloatArray]:
     """The rows of a trial and their times, s; a row printed twice, as OpenSim does, counts once.
 
     column, unit: of the times, "" for what the header says. columns: those that are used, by which rows are the same.
@@ -37,7 +37,7 @@ def times(table: Table, column: str, unit: str, columns: Collection[str]) -> tup
     return (table.taken(kept.tolist()) if again.any() else table), TIME_UNITS[unit or table.time_unit] * time[kept]
 
 
-def by_crank(table: Table, column: str, angle: FloatArray) -> list[IntArray]:
+def by_crank(table: TextTable, column: str, angle: FloatArray) -> list[IntArray]:
     """Rows of each whole turn, by a crank angle in rad that counts in the sense of pedalling, wrapped or not.
 
     Turns are counted from the first row. Raises InputError for fewer than one, with the likely cause.

@@ -14,15 +14,15 @@ from fes_mj.linkage.design import Rider
 from fes_mj.linkage.riders import boot_height
 from fes_mj.muscles.geometry import Flexion, Surfaces
 
-GROUPS = ("quadriceps", "hamstrings", "gluteus")
-FILE = DATA / "muscles" / "gait2392.toml"
+MUSCLE_GROUPS = ("quadriceps", "hamstrings", "gluteus")
+ANATOMY_FILE = DATA / "muscles" / "gait2392.toml"
 
 
 @dataclass(frozen=True, eq=False)
 class Anatomy:
     """Muscles of a generic adult, in the order of the file; arrays of shape (muscles,).
 
-    group: number in GROUPS, ascending. lengths: m, of hip and knee flexion. force: N, largest isometric.
+    group: number in MUSCLE_GROUPS, ascending. lengths: m, of hip and knee flexion. force: N, largest isometric.
     optimal, slack: m, of fibre and tendon. pennation: rad, at the optimal length. segments: names of the rider's
     segments that each lies along. thigh, shank: m, of that adult. hip_deg, knee_deg: flexion with known lengths.
     """
@@ -43,18 +43,18 @@ class Anatomy:
     @property
     def of_group(self) -> list[slice]:
         """The muscles of each group."""
-        ends = np.searchsorted(self.group, np.arange(len(GROUPS) + 1))
+        ends = np.searchsorted(self.group, np.arange(len(MUSCLE_GROUPS) + 1))
         return [slice(*pair) for pair in pairwise(ends)]
 
     @property
     def rectus(self) -> BoolArray:
         """Which muscle is the part of the quadriceps that passes the hip as well, shape (muscles,)."""
         two_joints = np.array([len(along) == 2 for along in self.segments])
-        return np.asarray(two_joints & (self.group == GROUPS.index("quadriceps")))
+        return np.asarray(two_joints & (self.group == MUSCLE_GROUPS.index("quadriceps")))
 
     def only(self, group: str) -> "Anatomy":
         """The muscles of one group."""
-        rows = self.of_group[GROUPS.index(group)]
+        rows = self.of_group[MUSCLE_GROUPS.index(group)]
         columns = ("names", "group", "force", "optimal", "slack", "pennation", "segments")
         lengths = Surfaces(self.lengths.coefficients[rows], self.lengths.degree)
         return replace(self, lengths=lengths, **{name: getattr(self, name)[rows] for name in columns})
@@ -98,7 +98,7 @@ class Anatomy:
 
 
 @cache
-def anatomy(path: Path = FILE) -> Anatomy:
+def anatomy(path: Path = ANATOMY_FILE) -> Anatomy:
     """The muscles of a file that tools/make_muscles.py wrote; by default those that ship."""
     content = read_toml(path, "muscles").content
     muscles, adult = content["muscle"], content["adult"]
@@ -108,7 +108,7 @@ def anatomy(path: Path = FILE) -> Anatomy:
 
     return Anatomy(
         names=tuple(muscles),
-        group=np.array([GROUPS.index(row["group"]) for row in muscles.values()]),
+        group=np.array([MUSCLE_GROUPS.index(row["group"]) for row in muscles.values()]),
         lengths=Surfaces(column("coefficients_m"), int(adult["degree"])),
         force=column("max_isometric_force_N"),
         optimal=column("optimal_fibre_length_m"),

@@ -16,7 +16,7 @@ from fes_mj.linkage.kinematics import Motion
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE, ReferenceTricycle
 from fes_mj.muscles.power import best_turn
 from fes_mj.muscles.riders import Riders
-from fes_mj.muscles.timing import ANGLES, POINTS
+from fes_mj.muscles.timing import TURN_ANGLES, TURN_POINTS
 
 
 def moments_by_angle(
@@ -24,15 +24,15 @@ def moments_by_angle(
 ) -> PerJoint[FloatArray]:
     """Joint moments along a motion of one design, N m, shape (..., angles).
 
-    moment: on the tricycle of the measurement over ANGLES of its crank, N m, shape (..., POINTS).
+    moment: on the tricycle of the measurement over TURN_ANGLES of its crank, N m, shape (..., TURN_POINTS).
     """
 
     def of_joint(joint: str) -> FloatArray:
         source = reference.source_angle(joint, motion.joint_angle[joint], motion.joint_rate[joint])
-        position = np.mod(source + reference.top_dead_centre, 2 * np.pi) * (POINTS / (2 * np.pi))
+        position = np.mod(source + reference.top_dead_centre, 2 * np.pi) * (TURN_POINTS / (2 * np.pi))
         index = position.astype(np.int64)
         table, part = moment[joint], position - index
-        here, there = table[..., index % POINTS], table[..., (index + 1) % POINTS]
+        here, there = table[..., index % TURN_POINTS], table[..., (index + 1) % TURN_POINTS]
         return np.asarray(here + part * (there - here))
 
     return PerJoint.of(of_joint)
@@ -55,7 +55,7 @@ def null_test(riders: Riders, designs: Sequence[Design], reference: ReferenceTri
     true, by_angle = [], []
     for design in designs:
         turn, _ = best_turn(riders, design, each_its_own=True)
-        motion = kinematics.solve(design, ANGLES)
+        motion = kinematics.solve(design, TURN_ANGLES)
         mapped, rate = moments_by_angle(moment, motion, reference), motion.joint_rate
         work = mapped.knee * rate.knee + mapped.hip * rate.hip
         true.append(turn.power_mean[:, 0])

@@ -14,7 +14,7 @@ from fes_mj.linkage import kinematics
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.joints import JOINTS, PerJoint
 from fes_mj.muscles.activation import answer, trapezium
-from fes_mj.muscles.anatomy import GROUPS
+from fes_mj.muscles.anatomy import MUSCLE_GROUPS
 from fes_mj.muscles.prior import ramp
 from fes_mj.muscles.riders import Riders
 
@@ -45,7 +45,7 @@ class JointLed:
         angle, rate = motion.joint_angle, motion.joint_rate
         source = PerJoint.of(lambda joint: trial.source_angle(joint, angle[joint], rate[joint]))
         on, width = np.radians(np.moveaxis(riders.windows(), -1, 0))[..., None]
-        there = np.stack([source[LEADING[group]] for group in GROUPS])
+        there = np.stack([source[LEADING[group]] for group in MUSCLE_GROUPS])
         return cls(riders, cadence, nodes, trapezium(there - on, width, trial.cadence * ramp()))
 
     def activation(self, start: Any = 0.0) -> FloatArray:

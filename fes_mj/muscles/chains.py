@@ -10,8 +10,8 @@ from dataclasses import replace
 import numpy as np
 
 from fes_mj.common.arrays import FloatArray
-from fes_mj.muscles.anatomy import GROUPS
-from fes_mj.muscles.identification import DRAWS, STRENGTHS, Candidates, Measured
+from fes_mj.muscles.anatomy import MUSCLE_GROUPS
+from fes_mj.muscles.identification import STRENGTH_DRAWS, STRENGTHS, Candidates, Measured
 from fes_mj.muscles.prior import priors, quantile, score
 from fes_mj.muscles.riders import Riders
 
@@ -49,7 +49,7 @@ def _looked_at(
     """Riders at these scores with strengths drawn, and the logarithm of their density, shape (riders,)."""
     values = {name: quantile(name, column) for name, column in zip(_QUANTITIES, scores.T, strict=True)}
     unit = {name: np.ones(len(scores)) for name in STRENGTHS}
-    numbers = random.standard_normal((DRAWS, len(scores), len(GROUPS)))
+    numbers = random.standard_normal((STRENGTH_DRAWS, len(scores), len(MUSCLE_GROUPS)))
     there, likelihood = Candidates.of(replace(riders, values=unit | values), measured).posterior(
         measured.values, numbers
     )

@@ -11,7 +11,7 @@ from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.torque_map import torque_map
 from fes_mj.muscles.riders import Riders, load_riders
 from fes_mj.muscles.rules import BEST, BY_ANGLE, RULES, STIMULATION_BY_ANGLE, Stimulated, stimulated, trial_moments
-from fes_mj.muscles.timing import ANGLES, DUTY
+from fes_mj.muscles.timing import DUTY, TURN_ANGLES
 from fes_mj.muscles.torque import MuscleTorque
 
 
@@ -67,7 +67,7 @@ class Muscles(Brief):
             return MuscleTorque(one)
         moment, trial = trial_moments(one.riders).map(lambda moments: moments[0]), self.riders.measured_on
         return torque_map(
-            JointMoments(self.name, ANGLES - trial.top_dead_centre, moment.knee, moment.hip, measured_on=trial)
+            JointMoments(self.name, TURN_ANGLES - trial.top_dead_centre, moment.knee, moment.hip, measured_on=trial)
         )
 
 

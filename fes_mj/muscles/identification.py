@@ -19,9 +19,9 @@ from fes_mj.linkage.joints import PerJoint
 from fes_mj.moments.fourier import HARMONICS
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE, ReferenceTricycle
 from fes_mj.moments.uncertainty import power_weights
-from fes_mj.muscles.anatomy import GROUPS
+from fes_mj.muscles.anatomy import MUSCLE_GROUPS
 from fes_mj.muscles.passive import passive_moments
-from fes_mj.muscles.posterior import Posterior
+from fes_mj.muscles.posterior import WeighedRiders
 from fes_mj.muscles.prior import priors, quantile, ramp
 from fes_mj.muscles.pull import pull
 from fes_mj.muscles.residual import Residual
@@ -30,12 +30,12 @@ from fes_mj.muscles.timing import Windows, responded
 
 DOUBTS = "are signs, units, zero and tricycle as declared, and does nothing but stimulated legs move the crank?"
 WHOLE = -1  # in place of a group: the whole moment, with passive part and residual
-STRENGTHS = [f"{group}_strength" for group in GROUPS]
+STRENGTHS = [f"{group}_strength" for group in MUSCLE_GROUPS]
 _POINTS = 120  # crank angles: against three times as many a power changes by 1e-3 of itself, a tenth of its error
 _TURN = np.arange(_POINTS) * (2 * np.pi / _POINTS)  # from the most bent knee
 _BLOCK = 200  # riders at once
 STAGES = 5
-DRAWS = 10  # of the strengths of each
+STRENGTH_DRAWS = 10  # of the strengths of each
 _FROM_PRIOR = 0.1  # share of the proposals, so that no weight is large where nobody looked
 
 
@@ -141,7 +141,7 @@ def _seen(riders: Riders, measured: Measured) -> tuple[FloatArray, FloatArray]:
     activation = responded(stimulation, riders, cadence)
     moment = pull(unit, motion, reference.cadence).moment.map(lambda moment: (activation * moment)[:, :, 0])
     by_group = np.einsum("rf,gmf->mrg", weights, coefficients(moment))
-    counts = (measured.group[:, None] == WHOLE) | (measured.group[:, None] == np.arange(len(GROUPS)))
+    counts = (measured.group[:, None] == WHOLE) | (measured.group[:, None] == np.arange(len(MUSCLE_GROUPS)))
     passive = passive_moments(riders.flexion(motion))
     return by_group * counts, coefficients(passive)[:, 0] @ weights.T * (measured.group == WHOLE)
 
@@ -158,7 +158,7 @@ def identify(
     count: int,
     name: str = "",
     advance: Callable[[int], None] = lambda _: None,
-) -> Posterior:
+) -> WeighedRiders:
     """What is known of a rider after a measurement: so many candidates at each of STAGES, the last weighed.
 
     name: of the riders; advance: called with the number of candidates just seen.
@@ -172,7 +172,7 @@ def identify(
 
 def weighed(
     seen: Callable[[Riders], Candidates], measured: FloatArray, random: np.random.Generator, count: int, name: str
-) -> Posterior:
+) -> WeighedRiders:
     """The same of any numbers, shape (rows,); seen: what these would be of riders with strengths of 1."""
     quantities = [name for name in priors() if name not in STRENGTHS]
     centre, spread = np.zeros(len(quantities)), np.eye(len(quantities))
@@ -183,14 +183,14 @@ def weighed(
         values = {name: quantile(name, column) for name, column in zip(quantities, scores.T, strict=True)}
         unit = {name: np.ones(count) for name in STRENGTHS}
         candidates = seen(Riders(name, unit | values, np.zeros(count)))
-        numbers = random.standard_normal((DRAWS, count, len(GROUPS)))
+        numbers = random.standard_normal((STRENGTH_DRAWS, count, len(MUSCLE_GROUPS)))
         riders, likelihood = candidates.posterior(measured, numbers)
         # a proposal's density per that of the prior
         ratio = np.exp(_log_density(scores - centre, spread) + np.sum(scores**2, axis=1) / 2)
         log_weight = likelihood - np.log(_FROM_PRIOR + (1 - _FROM_PRIOR) * ratio)
         if np.isfinite(log_weight).sum() < 2 * len(quantities):
             raise InputError(f"{name}: no muscles that pull can have given these numbers: {DOUBTS}")
-        posterior = Posterior(riders, log_weight)
+        posterior = WeighedRiders(riders, log_weight)
         weights = posterior.flattened().weights
         centre, spread = np.average(scores, axis=0, weights=weights), np.cov(scores.T, aweights=weights)
     return posterior

@@ -14,7 +14,7 @@ from fes_mj.common.reading import DATA, read_toml
 from fes_mj.linkage.joints import PerJoint
 from fes_mj.muscles.geometry import Flexion, Surfaces
 
-FILE = DATA / "muscles" / "passive.toml"
+PASSIVE_FILE = DATA / "muscles" / "passive.toml"
 
 
 def published(hip: Any, knee: Any) -> PerJoint[FloatArray]:
@@ -30,7 +30,7 @@ def published(hip: Any, knee: Any) -> PerJoint[FloatArray]:
 
 @cache
 def _potential() -> Surfaces:
-    section = read_toml(FILE, "potential of the passive moments")
+    section = read_toml(PASSIVE_FILE, "potential of the passive moments")
     return Surfaces(np.array([section.content["coefficients_J"]]), int(section.content["degree"]))
 
 

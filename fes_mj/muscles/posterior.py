@@ -10,7 +10,7 @@ from fes_mj.muscles.riders import Riders
 _LEAST_EFFECTIVE = 100  # riders by whose spread the next ones are proposed
 
 
-class Posterior(NamedTuple):
+class WeighedRiders(NamedTuple):
     """Weighed riders; log_weights: up to a constant, -inf for one that cannot be, shape (riders,)."""
 
     riders: Riders
@@ -30,7 +30,7 @@ class Posterior(NamedTuple):
         steps, weights = (np.arange(count) + 0.5) / count, self.weights
         return self.riders.taken(np.searchsorted(np.cumsum(weights) / weights.sum(), steps))
 
-    def flattened(self, enough: float = _LEAST_EFFECTIVE) -> "Posterior":
+    def flattened(self, enough: float = _LEAST_EFFECTIVE) -> "WeighedRiders":
         """The same with weights so flat that enough riders count to say where to look, or half of those that can be."""
         flat, enough = self, min(enough, np.isfinite(self.log_weights).sum() / 2)
         power = 1.0

@@ -13,14 +13,14 @@ from fes_mj.linkage.joints import PerJoint
 from fes_mj.linkage.legs import all_legs
 from fes_mj.muscles.pull import Pull, pull
 from fes_mj.muscles.riders import Riders
-from fes_mj.muscles.timing import ANGLES, DUTY, Windows, activation, best_windows
+from fes_mj.muscles.timing import DUTY, TURN_ANGLES, Windows, activation, best_windows
 
-BLOCK = 64  # members of designs at once: more leave the processor's cache, fewer cost calls
+MEMBER_BLOCK = 64  # members of designs at once: more leave the processor's cache, fewer cost calls
 
 
 @dataclass(frozen=True, eq=False)
 class MuscleTurn:
-    """A turn of every rider on every design; activation: shape (groups, members, designs, angles), over ANGLES."""
+    """A turn of every rider on every design; activation: shape (groups, members, designs, angles), over TURN_ANGLES."""
 
     pulled: Pull
     activation: FloatArray
@@ -57,7 +57,7 @@ class MuscleTurn:
 
 def muscle_turn(riders: Riders, design: Design, cadence: Any, windows: Windows) -> MuscleTurn:
     """Of riders stimulated so on a design, or a batch; cadence: rad/s, scalar or (designs, 1)."""
-    pulled = pull(riders, kinematics.solve(design, ANGLES), cadence)
+    pulled = pull(riders, kinematics.solve(design, TURN_ANGLES), cadence)
     return MuscleTurn(pulled, activation(windows, riders, cadence))
 
 
@@ -66,7 +66,7 @@ def best_turn(
 ) -> tuple[MuscleTurn, Windows]:
     """Of riders stimulated at their best (timing.best_windows), and the windows; cadence: by default the design's."""
     cadence = design.linkage.cadence if cadence is None else cadence
-    pulled = pull(riders, kinematics.solve(design, ANGLES), cadence)
+    pulled = pull(riders, kinematics.solve(design, TURN_ANGLES), cadence)
     windows, _ = best_windows(pulled.power, riders, cadence, duty, each_its_own)
     return MuscleTurn(pulled, activation(windows, riders, cadence)), windows
 
@@ -79,10 +79,10 @@ def best_power(riders: Riders, design: Design, duty: float = DUTY) -> FloatArray
 
     def power(block: Design) -> FloatArray:
         speed = block.linkage.cadence
-        pulled = pull(riders, kinematics.solve(block, ANGLES), speed)
+        pulled = pull(riders, kinematics.solve(block, TURN_ANGLES), speed)
         return np.asarray(best_windows(pulled.power, riders, speed, duty)[1][0])
 
-    size = max(1, BLOCK // len(riders))
+    size = max(1, MEMBER_BLOCK // len(riders))
     blocks = (design.taken(slice(start, start + size)) for start in range(0, design.size, size))
     with np.errstate(invalid="ignore"):
         return np.concatenate([power(block) for block in blocks])

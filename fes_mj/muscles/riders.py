@@ -16,7 +16,7 @@ from fes_mj.common.writing import replacing
 from fes_mj.linkage.kinematics import Motion
 from fes_mj.linkage.variables import component, replaced
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE, ReferenceTricycle
-from fes_mj.muscles.anatomy import GROUPS, Anatomy
+from fes_mj.muscles.anatomy import MUSCLE_GROUPS, Anatomy
 from fes_mj.muscles.geometry import Flexion
 from fes_mj.muscles.prior import priors
 
@@ -74,19 +74,19 @@ class Riders(Brief):
 
     def strength(self, anatomy: Anatomy) -> FloatArray:
         """Of each muscle per that of the anatomy, shape (muscles, members, 1, 1)."""
-        groups = np.stack([self[f"{group}_strength"] for group in GROUPS])
+        groups = np.stack([self[f"{group}_strength"] for group in MUSCLE_GROUPS])
         rectus = anatomy.rectus[:, None, None, None]
         return np.asarray(groups[anatomy.group] * np.where(rectus, self["rectus_recruitment"], 1.0))
 
     def slack(self, anatomy: Anatomy) -> FloatArray:
         """Slack length of each tendon, m, shape (muscles, members, 1, 1): longer fibres belong to a shorter tendon."""
-        shift = np.stack([self[f"{group}_fibre_shift"] for group in GROUPS])[anatomy.group]
+        shift = np.stack([self[f"{group}_fibre_shift"] for group in MUSCLE_GROUPS])[anatomy.group]
         return np.asarray(anatomy.slack[:, None, None, None] - shift * anatomy.optimal[:, None, None, None])
 
     def windows(self) -> FloatArray:
         """[on, width] of each group in the measurement, deg of crank from the most bent knee; (groups, members, 2)."""
         ends = ("on_deg", "width_deg")
-        return np.stack([np.stack([self.values[f"{group}_{end}"] for end in ends], axis=-1) for group in GROUPS])
+        return np.stack([np.stack([self.values[f"{group}_{end}"] for end in ends], axis=-1) for group in MUSCLE_GROUPS])
 
     def save(self, path: Path) -> None:
         """Write all members, and the tricycle of the measurement, to an .npz file."""

@@ -24,7 +24,7 @@ from fes_mj.muscles.geometry import Flexion
 from fes_mj.muscles.power import MuscleTurn, best_turn, muscle_turn
 from fes_mj.muscles.pull import pull
 from fes_mj.muscles.riders import Riders
-from fes_mj.muscles.timing import ANGLES, DUTY, Windows
+from fes_mj.muscles.timing import DUTY, TURN_ANGLES, Windows
 
 BEST, MEASURED, BY_ANGLE, STIMULATION_BY_ANGLE = RULES = ("best", "measured", "by-angle", "stimulation-by-angle")
 
@@ -33,8 +33,8 @@ BEST, MEASURED, BY_ANGLE, STIMULATION_BY_ANGLE = RULES = ("best", "measured", "b
 class Stimulated:
     """Riders on one design under a rule.
 
-    motion: over ANGLES. moment: of the muscles, N m, positive in extension, shape (members, angles). turn: what muscles
-    do, and windows: when, (groups, members or 1, 1); None where the rule knows none.
+    motion: over TURN_ANGLES. moment: of the muscles, N m, positive in extension, shape (members, angles). turn: what
+    muscles do, and windows: when, (groups, members or 1, 1); None where the rule knows none.
     """
 
     riders: Riders
@@ -92,15 +92,15 @@ def _stimulated(rule: str, riders: Riders, design: Design, cadence: float, duty:
         windows = trial_windows(riders, design)
         turn = muscle_turn(riders, design, cadence, windows)
     else:
-        active = JointLed.of(riders, design, cadence, ANGLES).activation_at(ANGLES)
+        active = JointLed.of(riders, design, cadence, TURN_ANGLES).activation_at(TURN_ANGLES)
         turn = MuscleTurn(pull(riders, motion, cadence), active[:, :, None])
     return Stimulated(riders, motion, cadence, turn.moment.map(lambda moment: moment[:, 0]), turn, windows)
 
 
 def known_motion(riders: Riders, design: Design) -> Motion:
-    """Over ANGLES. Raises as `stimulated`."""
+    """Over TURN_ANGLES. Raises as `stimulated`."""
     turning(design)
-    motion = kinematics.solve(design, ANGLES)
+    motion = kinematics.solve(design, TURN_ANGLES)
     anatomy().require_range(design.name, riders.flexion(motion))
     return motion
 
@@ -112,7 +112,7 @@ def trial_windows(riders: Riders, design: Design) -> Windows:
 
 
 def trial_moments(riders: Riders) -> PerJoint[FloatArray]:
-    """Joint moments of the muscles in the measurement over ANGLES of its crank, N m, shape (members, POINTS)."""
+    """Joint moments of the muscles in the measurement over a turn of its crank, N m, shape (members, TURN_POINTS)."""
     trial = riders.measured_on
     there = muscle_turn(riders, trial.design, trial.cadence, trial_windows(riders, trial.design))
     return there.moment.map(lambda moment: moment[:, 0])

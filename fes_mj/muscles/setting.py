@@ -14,7 +14,7 @@ from fes_mj.common.units import RPM, turns_per_second
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.legs import TWO_LEGS, all_legs
 from fes_mj.linkage.turning import turning
-from fes_mj.muscles.anatomy import GROUPS, anatomy
+from fes_mj.muscles.anatomy import MUSCLE_GROUPS, anatomy
 from fes_mj.muscles.fatigue import HALF_AN_HOUR, power_over_time, recoveries
 from fes_mj.muscles.power import MuscleTurn
 from fes_mj.muscles.riders import Riders
@@ -121,7 +121,7 @@ class Setting:
     def records(self) -> Iterator[dict[str, Any]]:
         """A row for each group and leg, as files name and unit it; angles None where a group is not stimulated."""
         top = turning(self.design).top_dead_centre
-        for number, group in enumerate(GROUPS):
+        for number, group in enumerate(MUSCLE_GROUPS):
             width = float(self.windows.width[number, 0, 0])
             power, effort = self.power[number], float(self.effort[number])
             for leg in TWO_LEGS[: self.legs]:

@@ -10,11 +10,11 @@ from fes_mj.muscles.instant import LegMuscles, activated, weights
 
 # Crank, knee and hip angle, rad, speeds of knee and hip, rad/s -> stimulation of each group that the muscles are asked
 # for there and then.
-Stimulator: TypeAlias = Callable[[float, float, float, float, float], Sequence[float]]
+StimulusLaw: TypeAlias = Callable[[float, float, float, float, float], Sequence[float]]
 _SETTLED = 1e-9  # of an activation, by which a turn may end beside where it began
 
 
-class Memory(NamedTuple):
+class MuscleMemory(NamedTuple):
     """What the muscles of a leg know of the steps before: stimulation on its way, the last that arrived, activation."""
 
     asked: tuple[Sequence[float], ...]
@@ -28,7 +28,7 @@ class MuscleStepper:
     Stimulation arrives `leg.delay` after it was asked for, between two steps as a straight line between both.
     """
 
-    def __init__(self, leg: LegMuscles, timestep: float, memory: Memory) -> None:
+    def __init__(self, leg: LegMuscles, timestep: float, memory: MuscleMemory) -> None:
         _, self._part = _delay(leg, timestep)
         self._rising, self._falling = weights(timestep, leg.rise), weights(timestep, leg.fall)
         self._asked = deque(memory.asked, maxlen=len(memory.asked))
@@ -51,7 +51,7 @@ def _delay(leg: LegMuscles, timestep: float) -> tuple[int, float]:
     return int(steps), steps % 1
 
 
-def steady(leg: LegMuscles, timestep: float, turn: Sequence[Sequence[float]], start: Sequence[float]) -> Memory:
+def steady(leg: LegMuscles, timestep: float, turn: Sequence[Sequence[float]], start: Sequence[float]) -> MuscleMemory:
     """What muscles remember at the end of a turn that has always been the same.
 
     turn: stimulation that is asked for in each of its steps. start: activation, as well as it is known; it saves turns.
@@ -71,4 +71,4 @@ def steady(leg: LegMuscles, timestep: float, turn: Sequence[Sequence[float]], st
                 value = activated(value, earlier, now, rising, falling)
         arrived.append(felt[-1])
         activation.append(value)
-    return Memory(tuple(turn[row % count] for row in range(-whole - 2, 0)), arrived, tuple(activation))
+    return MuscleMemory(tuple(turn[row % count] for row in range(-whole - 2, 0)), arrived, tuple(activation))

@@ -12,17 +12,20 @@ import numpy as np
 from fes_mj.common.arrays import ComplexArray, FloatArray
 from fes_mj.common.errors import InputError
 from fes_mj.muscles.activation import answer, trapezium
-from fes_mj.muscles.anatomy import GROUPS
+from fes_mj.muscles.anatomy import MUSCLE_GROUPS
 from fes_mj.muscles.prior import ramp
 from fes_mj.muscles.riders import Riders
 
-POINTS = 360  # crank angles of a turn
-ANGLES = np.arange(POINTS) * (2 * np.pi / POINTS)
-STEP = 5  # deg, of on-angles and widths
+TURN_POINTS = 360  # crank angles of a turn
+TURN_ANGLES = np.arange(TURN_POINTS) * (2 * np.pi / TURN_POINTS)
+WINDOW_STEP = 5  # deg, of on-angles and widths
 DUTY = 100 / 360  # largest share of the turn in which a group is stimulated
-DUTIES = f"a share of the turn (degrees divided by 360), from {STEP / 360:.3f}, a window of {STEP} deg, to 1, all of it"
-LEAST_SHARE = 0.02  # of the expected power of all groups; for less a group is not worth its stimulation
-_STARTS = POINTS // STEP
+DUTIES = (
+    f"a share of the turn (degrees divided by 360), from {WINDOW_STEP / 360:.3f}, a window of {WINDOW_STEP} deg, "
+    "to 1, all of it"
+)
+LEAST_POWER_SHARE = 0.02  # of the expected power of all groups; for less a group is not worth its stimulation
+_STARTS = TURN_POINTS // WINDOW_STEP
 _MEMBERS = 100  # at once: the answers of more to every width leave the processor's cache
 
 
@@ -50,7 +53,7 @@ class Windows:
         own = self.of(member)
         pairs = zip(own.on[:, 0, 0], own.width[:, 0, 0], strict=True)
         ends = ([float(on), float((on + width) % 360)] if width else None for on, width in pairs)
-        return dict(zip(GROUPS, ends, strict=True))
+        return dict(zip(MUSCLE_GROUPS, ends, strict=True))
 
     def shifted(self, degrees: float) -> "Windows":
         """The same later in the turn."""
@@ -58,9 +61,9 @@ class Windows:
 
 
 def activation(windows: Windows, riders: Riders, cadence: Any) -> FloatArray:
-    """Of each group over ANGLES, shape (groups, members, designs, angles); cadence: rad/s, scalar or (designs, 1)."""
+    """Of each group over TURN_ANGLES, shape (groups, members, designs, angles); cadence: rad/s, or (designs, 1)."""
     cadence = np.reshape(cadence, (-1, 1))
-    return responded(windows.at(ANGLES - cadence * riders["delay_s"], cadence * ramp()), riders, cadence)
+    return responded(windows.at(TURN_ANGLES - cadence * riders["delay_s"], cadence * ramp()), riders, cadence)
 
 
 def responded(stimulation: FloatArray, riders: Riders, cadence: FloatArray) -> FloatArray:
@@ -71,7 +74,7 @@ def responded(stimulation: FloatArray, riders: Riders, cadence: FloatArray) -> F
 
 def is_duty(share: float) -> bool:
     """Whether a share of the turn is one of DUTIES."""
-    return STEP / 360 <= share <= 1
+    return WINDOW_STEP / 360 <= share <= 1
 
 
 def widths_up_to(duty: float) -> FloatArray:
@@ -81,7 +84,7 @@ def widths_up_to(duty: float) -> FloatArray:
     """
     if not is_duty(duty):
         raise InputError(f"duty is {duty:g}; it must be {DUTIES}")
-    return np.arange(STEP, np.round(360 * duty) + 1, STEP)
+    return np.arange(WINDOW_STEP, np.round(360 * duty) + 1, WINDOW_STEP)
 
 
 def best_windows(
@@ -91,7 +94,7 @@ def best_windows(
 
     And that power, W, of all groups, shape (members or 1, designs).
 
-    power: W per activation, shape (groups, members, designs, angles), over ANGLES; cadence: as for `activation`.
+    power: W per activation, shape (groups, members, designs, angles), over TURN_ANGLES; cadence: as for `activation`.
     each_its_own: the best ones of every member instead, for one who has been measured completely.
     Raises InputError for a duty below that of a window of 5 deg, or above 1.
     """
@@ -102,12 +105,12 @@ def best_windows(
     if not each_its_own:
         together = together.sum(axis=1, keepdims=True) / len(riders)
     # (groups, members, designs, widths, starts); the inverse divides by the number of starts
-    expected = np.fft.irfft(together, _STARTS) * (_STARTS / POINTS**2)
+    expected = np.fft.irfft(together, _STARTS) * (_STARTS / TURN_POINTS**2)
     flat = expected.reshape(*expected.shape[:-2], -1)
     best, largest = flat.argmax(axis=-1), flat.max(axis=-1)
-    worth = largest > LEAST_SHARE * np.maximum(largest, 0).sum(axis=0)
+    worth = largest > LEAST_POWER_SHARE * np.maximum(largest, 0).sum(axis=0)
     width, start = np.unravel_index(best, expected.shape[-2:])
-    windows = Windows(np.where(worth, STEP * start, 0.0), np.where(worth, widths[width], 0.0))
+    windows = Windows(np.where(worth, WINDOW_STEP * start, 0.0), np.where(worth, widths[width], 0.0))
     return windows, (worth * largest).sum(axis=0)
 
 
@@ -118,7 +121,7 @@ def _spectra(power: FloatArray, riders: Riders, cadence: Any, widths: FloatArray
     """
     # in single precision, which tells windows apart by 1e-6 of the power
     single, cadence = np.float32, np.reshape(cadence, (-1, 1))
-    since_on = (ANGLES - cadence * riders["delay_s"]).astype(single)
+    since_on = (TURN_ANGLES - cadence * riders["delay_s"]).astype(single)
     tried = np.radians(widths).astype(single)[:, None, None, None]
     answers = responded(trapezium(since_on, tried, (cadence * ramp()).astype(single)), riders, cadence)
     # harmonics beyond half the number of starts have less than 1e-6 of the power, as both curves are continuous

@@ -17,14 +17,14 @@ from fes_mj.linkage.legs import Leg
 from fes_mj.linkage.torque_source import LegControl
 from fes_mj.moments.torque_map import scalar_source
 from fes_mj.muscles.activation import answer
-from fes_mj.muscles.anatomy import GROUPS
+from fes_mj.muscles.anatomy import MUSCLE_GROUPS
 from fes_mj.muscles.by_joint import LEADING, TURNED, JointLed
 from fes_mj.muscles.instant import LegMuscles, Stimulus, joint_moments, stimulation
 from fes_mj.muscles.prior import ramp
 from fes_mj.muscles.pull import pull
 from fes_mj.muscles.riders import Riders
 from fes_mj.muscles.rules import Stimulated
-from fes_mj.muscles.stepping import Memory, MuscleStepper, Stimulator, steady
+from fes_mj.muscles.stepping import MuscleMemory, MuscleStepper, StimulusLaw, steady
 
 # Crank angles of a turn at which activation is known where a power curve is compared: what corners of windows hide in
 # between is then less than the error of the finest time step of a refinement.
@@ -37,7 +37,7 @@ class MuscleTorque(Brief):
     """Of one rider, stimulated on one design at one cadence; every leg does the same, its part of a turn later."""
 
     stimulated: Stimulated
-    _memories: dict[tuple[float, float], Memory] = field(default_factory=dict)
+    _memories: dict[tuple[float, float], MuscleMemory] = field(default_factory=dict)
 
     @property
     def brief(self) -> str:
@@ -101,7 +101,7 @@ class MuscleTorque(Brief):
     def _answer(self) -> FloatArray:
         """Activation at the same angles."""
         turn, known = self.stimulated.turn, self.riders
-        start = np.zeros(len(GROUPS)) if turn is None else turn.activation[:, 0, 0, 0]
+        start = np.zeros(len(MUSCLE_GROUPS)) if turn is None else turn.activation[:, 0, 0, 0]
         if self.stimulated.windows is None:
             return self._led.activation(start[:, None])[:, 0]
         times = 2 * np.pi / self.cadence, known["rise_s"].item(), known.fall.item()
@@ -121,14 +121,14 @@ class MuscleTorque(Brief):
         """The rider's muscles, in lists."""
         return LegMuscles.of(self.riders, self.design.rider).in_lists
 
-    def stimulator(self, lag: float) -> Stimulator:
+    def stimulator(self, lag: float) -> StimulusLaw:
         """What asks for stimulation in a leg that trails by this crank angle, rad: crank, or joints that move so."""
-        stimulus, groups = self.stimulus, range(len(GROUPS))
+        stimulus, groups = self.stimulus, range(len(MUSCLE_GROUPS))
         if self.stimulated.windows is not None:
             return lambda crank, *_: [stimulation(stimulus, group, crank - lag) for group in groups]
         sources, trial = [scalar_source(joint) for joint in JOINTS], self.riders.measured_on
         where = [trial.parameters(joint) for joint in JOINTS]
-        leading = [JOINTS.index(LEADING[group]) for group in GROUPS]
+        leading = [JOINTS.index(LEADING[group]) for group in MUSCLE_GROUPS]
         last = [rate.item() for rate in kinematics.solve(self.design, -lag - _FINE_TURN[[1]]).joint_rate]
 
         def asked(group: int, joint: int, angle: float, rate: float) -> float:
@@ -163,7 +163,7 @@ class MuscleTorque(Brief):
 
     moments_of = staticmethod(joint_moments)
 
-    def _memory(self, ask: Stimulator, lag: float, timestep: float) -> Memory:
+    def _memory(self, ask: StimulusLaw, lag: float, timestep: float) -> MuscleMemory:
         """What a leg's muscles remember at crank angle 0, the same in every run."""
         if (lag, timestep) not in self._memories:
             count = round(2 * np.pi / self.cadence / timestep)

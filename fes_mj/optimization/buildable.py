@@ -31,7 +31,7 @@ from fes_mj.statics.turn import DrivenTurn
 MARGIN, PIN, THICKNESS = 0.015, 0.012, 0.008
 # Crank angles at which forces and clearances are looked at during a search; between them a clearance of links within
 # 0.3 m is less by 0.3 mm at most.
-POINTS = 72
+SEARCH_POINTS = 72
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ class BuildLimits:
 
 COMMON = BuildLimits()
 _AS_GOOD = 0.01  # deg: a search looks at fewer crank angles
-PLAIN = Bearings(0.1, 0.008)
+PLAIN_BEARINGS = Bearings(0.1, 0.008)
 KEYS = tuple(field.name for field in fields(BuildLimits))
 
 
@@ -87,7 +87,7 @@ def _on_pins(forces: dict[str, ComplexArray]) -> float:
     return max(force for joint, force in peaks(forces).items() if joint not in JOINTS)
 
 
-def clearance(design: Design, points: int = POINTS) -> float:
+def clearance(design: Design, points: int = SEARCH_POINTS) -> float:
     """What is left between what moves in the best layers, m, of links and pins of common size."""
     plates = {
         body: Plate(body, tuple(Hole(joint, place, PIN) for joint, place in places.items()), MARGIN, THICKNESS)
@@ -138,7 +138,7 @@ class Buildability:
             hole_distance_min_m=float(hole_distance(turn.design)[0]),
             pin_force_max_N=_on_pins(forces.with_masses),
             clearance_min_m=least,
-            friction_loss_W=BearingLoss(forces, PLAIN).power,
+            friction_loss_W=BearingLoss(forces, PLAIN_BEARINGS).power,
         )
 
     def broken(self, limits: BuildLimits = COMMON) -> dict[str, str]:

@@ -20,7 +20,7 @@ from fes_mj.common.text import printable
 from fes_mj.common.writing import json_text, make_folder, write_text
 from fes_mj.linkage.design_file import design_toml
 from fes_mj.optimization.problem import Problem
-from fes_mj.optimization.search import Result
+from fes_mj.optimization.search import SearchResult
 
 _UNFINISHED = "\nBest so far, of a search that is not finished."
 
@@ -99,18 +99,18 @@ class Findings:
             self._publish(best[1], str(search))
             self._known, published = best[0], best
 
-    def finish(self, search: int, result: Result) -> None:
+    def finish(self, search: int, result: SearchResult) -> None:
         """Keep the result of a finished search."""
         self.improve(search, result.x, result.merit)
         write_text(self.folder / f"search-{search}.json", json_text(vars(result)))
 
-    def finished(self) -> dict[int, Result]:
+    def finished(self) -> dict[int, SearchResult]:
         """Results of the finished searches, by their numbers."""
-        names = [field.name for field in dataclasses.fields(Result)]
+        names = [field.name for field in dataclasses.fields(SearchResult)]
         results = {}
         for path in self.folder.glob("search-*.json"):
             x, merit, evaluations, history = _read(path, *names)
-            results[int(path.stem.partition("-")[2])] = Result(np.array(x), merit, evaluations, np.array(history))
+            results[int(path.stem.partition("-")[2])] = SearchResult(np.array(x), merit, evaluations, np.array(history))
         return results
 
     def remove(self) -> None:

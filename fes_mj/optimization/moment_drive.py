@@ -14,7 +14,7 @@ from fes_mj.linkage.joints import JOINTS, PerJoint
 from fes_mj.linkage.kinematics import solve, uniform_turn
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.torque_map import torque_map
-from fes_mj.optimization.buildable import POINTS, pin_force
+from fes_mj.optimization.buildable import SEARCH_POINTS, pin_force
 from fes_mj.statics.cycles import Cycles
 from fes_mj.statics.extrapolation import NO_MORE
 
@@ -63,7 +63,7 @@ class MomentDrive:
     def pin_force(self, design: Design) -> float:
         """Largest on any pin while riding with masses, N, of a design that turns."""
         assert self.moments, "limits of what can be built need the moments"
-        motion = solve(design, uniform_turn(POINTS))
+        motion = solve(design, uniform_turn(SEARCH_POINTS))
         return pin_force(motion, torque_map(self.moments).along(motion, design.linkage.cadence))
 
 

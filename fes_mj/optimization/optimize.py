@@ -18,14 +18,14 @@ from fes_mj.common.units import turns_per_second
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.design_file import load_design
 from fes_mj.moments.files import load_moments
-from fes_mj.moments.joint_moments import GROUPS, JointMoments
+from fes_mj.moments.joint_moments import RIDER_GROUPS, JointMoments
 from fes_mj.optimization.findings import Findings
 from fes_mj.optimization.limits import MEANINGS, PIVOTS, VARIED
 from fes_mj.optimization.moment_drive import MomentDrive
 from fes_mj.optimization.pareto import Front, pareto_front
 from fes_mj.optimization.problem import LENGTH_COUNT, Evaluation, Problem, make_problem
 from fes_mj.optimization.repair import changes, repaired
-from fes_mj.optimization.search import BUDGETS, METHODS, BudgetSpentError, Result, Search, Start, usual_budget
+from fes_mj.optimization.search import BUDGETS, METHODS, BudgetSpentError, Search, SearchResult, Start, usual_budget
 from fes_mj.statics.cycles import cycles
 from fes_mj.statics.work_table import WorkTable
 
@@ -193,7 +193,7 @@ def _front(
     problem: Problem, moments: JointMoments, budget: int, seed: int, smooth: bool, findings: Findings | None
 ) -> Front:
     """Of the powers of both groups; their average is what counts as the best so far."""
-    groups = tuple(map(load_moments, GROUPS))
+    groups = tuple(map(load_moments, RIDER_GROUPS))
     averaged = replace(problem, table=WorkTable.of(*groups), drive=MomentDrive(moments))
     improved = partial(findings.improve, 0) if findings else None
     return pareto_front(averaged, groups, budget, seed, smooth, improved)
@@ -210,14 +210,14 @@ def run_searches(
     workers: Workers = HERE,
     findings: Findings | None = None,
     progress: Callable[[int], None] = lambda _: None,
-) -> list[Result]:
+) -> list[SearchResult]:
     """Independent searches of a problem, best first; otherwise as optimize.
 
     start: ten variables, feasible; by default random. Searches on a cluster, which may not see the files of findings,
     are kept when finished.
     """
     seeds = SeedSequence(seed).spawn(searches)
-    outcomes: dict[int, Result | InputError] = {**findings.finished()} if findings else {}
+    outcomes: dict[int, SearchResult | InputError] = {**findings.finished()} if findings else {}
     budget = usual_budget(method, not problem.drive.proportional) if budget is None else budget
     here = workers.jobs == 1 and not workers.cluster
     progress(budget * len(outcomes))
@@ -226,12 +226,12 @@ def run_searches(
     task = partial(search_once, problem, method, budget, start, kept_at_once, progress if here else None)
     for index, outcome in run_tasks(task, [(number, seeds[number]) for number in missing], workers):
         outcomes[missing[index]] = outcome
-        if findings and isinstance(outcome, Result):
+        if findings and isinstance(outcome, SearchResult):
             findings.finish(missing[index], outcome)
-        done = outcome.evaluations if here and isinstance(outcome, Result) else budget if here else 0
+        done = outcome.evaluations if here and isinstance(outcome, SearchResult) else budget if here else 0
         progress(budget - done)
     ordered = [outcomes[number] for number in range(searches)]
-    results = [outcome for outcome in ordered if isinstance(outcome, Result)]
+    results = [outcome for outcome in ordered if isinstance(outcome, SearchResult)]
     if not results:
         raise next(outcome for outcome in ordered if isinstance(outcome, InputError))
     return sorted(results, key=lambda result: -result.merit)
@@ -245,7 +245,7 @@ def search_once(
     findings: Findings | None,
     counted: Callable[[int], None] | None,
     task: tuple[int, SeedSequence],
-) -> Result | InputError:
+) -> SearchResult | InputError:
     """One search, by its number and its own random numbers; an error, as a value, if nothing feasible turned up."""
     number, seed = task
     search = Search(problem, budget, partial(findings.improve, number) if findings else None, counted)

@@ -8,7 +8,7 @@ import numpy as np
 from fes_mj.common.arrays import FloatArray
 from fes_mj.common.style import COLOURS, INK, MOMENTS, SERIES
 from fes_mj.linkage.design_file import design_toml
-from fes_mj.moments.joint_moments import GROUPS
+from fes_mj.moments.joint_moments import RIDER_GROUPS
 from fes_mj.optimization.optimize import Optimum
 from fes_mj.optimization.pareto import FLUCTUATION, Front
 from fes_mj.optimization.winner import Winner
@@ -66,13 +66,13 @@ def _front_figures(front: Front, chosen: FloatArray) -> list[str]:
         figure, (axes,) = page_axes()
         dots = axes.scatter(front.power[:, 0], front.power[:, 1], c=SERIES[0] if smooth is None else smooth, s=18)
         axes.plot(*front.power[best], **star, label="this design")
-        axes.set(xlabel=f"mean crank power {GROUPS[0]}, W", ylabel=f"{GROUPS[1]}, W")
+        axes.set(xlabel=f"mean crank power {RIDER_GROUPS[0]}, W", ylabel=f"{RIDER_GROUPS[1]}, W")
         if smooth is None:
             return [page_svg(figure, axes)]
         figure.colorbar(dots, label=FLUCTUATION)
         over, (below,) = page_axes()
-        for group, power, colour in zip(GROUPS, front.power.T, MOMENTS, strict=False):
+        for group, power, colour in zip(RIDER_GROUPS, front.power.T, MOMENTS, strict=False):
             below.plot(smooth, power, ".", color=colour, label=group)
             below.plot(smooth[best], power[best], **star)
-        below.set(xlabel=f"{FLUCTUATION}, two legs, {GROUPS[0]}", ylabel="mean crank power, W")
+        below.set(xlabel=f"{FLUCTUATION}, two legs, {RIDER_GROUPS[0]}", ylabel="mean crank power, W")
         return [page_svg(figure, axes), page_svg(over, below)]

@@ -10,13 +10,13 @@ from fes_mj.common.errors import InputError, require_extra
 from fes_mj.common.markdown import Table
 from fes_mj.common.writing import csv_text
 from fes_mj.linkage.variables import LENGTHS
-from fes_mj.moments.joint_moments import GROUPS, JointMoments
+from fes_mj.moments.joint_moments import RIDER_GROUPS, JointMoments
 from fes_mj.optimization.evenness import fluctuation
 from fes_mj.optimization.limits import VARIED
 from fes_mj.optimization.problem import Evaluation, Problem
 from fes_mj.optimization.search import Improved, Search
 
-POPULATION = 100
+FRONT_POPULATION = 100
 FLUCTUATION = "fluctuation of energy"  # the coefficient, see evenness.fluctuation
 _ROWS = 12  # of the front's table
 
@@ -36,7 +36,7 @@ class Front:
     def as_json(self) -> list[dict[str, Any]]:
         """A dictionary a design."""
         rows: list[dict[str, Any]] = [
-            {"power_mean_W": dict(zip(GROUPS, power, strict=True)), "x": x}
+            {"power_mean_W": dict(zip(RIDER_GROUPS, power, strict=True)), "x": x}
             for power, x in zip(self.power.tolist(), self.x.tolist(), strict=True)
         ]
         for row, value in zip(rows, self._smooth.get("fluctuation", ()), strict=False):
@@ -45,14 +45,14 @@ class Front:
 
     def as_csv(self) -> str:
         """A row a design."""
-        powers = {f"power_{group}_W": column for group, column in zip(GROUPS, self.power.T, strict=True)}
+        powers = {f"power_{group}_W": column for group, column in zip(RIDER_GROUPS, self.power.T, strict=True)}
         return csv_text(powers | dict(zip(VARIED, self.x.T, strict=True)) | self._smooth)
 
     @property
     def table(self) -> Table:
         """Designs all along the front: number, powers and, if it was an objective, fluctuation."""
         shown = np.unique(np.linspace(0, len(self.x) - 1, _ROWS).astype(int))
-        columns = {"design": ""} | {f"{group}, W": ".2f" for group in GROUPS}
+        columns = {"design": ""} | {f"{group}, W": ".2f" for group in RIDER_GROUPS}
         columns |= dict.fromkeys([FLUCTUATION] * len(self._smooth), ".3f")
         measured = np.column_stack([self.power, *self._smooth.values()])
         return Table(f"{len(shown)} of {len(self.x)} designs", columns, [(f"{row}", *measured[row]) for row in shown])
@@ -86,7 +86,7 @@ def pareto_front(
     low, high = problem.limits.search[: len(LENGTHS)].T
     goals, limits = problem.table.sets + smooth, len(problem.constraints)
     space = Space(n_var=len(LENGTHS), n_obj=goals, n_ieq_constr=limits, xl=low, xu=high)
-    search, nsga = Search(problem, budget, improved), NSGA2(pop_size=POPULATION)
+    search, nsga = Search(problem, budget, improved), NSGA2(pop_size=FRONT_POPULATION)
     nsga.setup(space, termination=("n_eval", budget), seed=seed)
     while nsga.has_next():
         population = nsga.ask()

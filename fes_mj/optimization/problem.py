@@ -44,7 +44,7 @@ LENGTH_COUNT = len(VARIED) - 1  # all variables but the gear ratio, which comes 
 # A design below any feasible one, and each margin it was refused too early to have counts as ten scales.
 INFEASIBLE, _UNKNOWN = -1e4, 10.0
 BUILDABLE: Mapping[str, float] = MappingProxyType({})  # the limits of what can be built, none of them changed
-ROOM = 0.15  # m around the pivots of a design whose place is its own
+PIVOT_ROOM = 0.15  # m around the pivots of a design whose place is its own
 KINDS = {"crt": "r1", "cdt": "d1", "trt": "trt"}  # with a printed design, whose rider and seat are the usual ones
 _HAIR = 1e-12  # keeps a number that is computed again on the same side of its limit
 
@@ -289,7 +289,7 @@ def make_problem(
     known = load_limits(limits, build)
     pivots = [template.linkage.ground, template.linkage.crank_centre]
     if limits == DEFAULT and depth_inside(known.polygon, np.array(pivots)).min() < 0:
-        known = known.holding(pivots, ROOM)
+        known = known.holding(pivots, PIVOT_ROOM)
     if like:
         known = replace(known, gear_ratio_max=own.linkage.gear_ratio)
     if kind == "trt":

@@ -16,11 +16,11 @@ from fes_mj.optimization.problem import INFEASIBLE, LENGTH_COUNT, Problem
 
 Improved: TypeAlias = Callable[[FloatArray, float], None]  # a feasible design, shape (variables,), and its merit
 Start: TypeAlias = FloatArray | None
-POPULATION = 7  # per variable
+POPULATION_FACTOR = 7  # per variable
 # Part of the search range; a restart of CMA-ES begins at another random feasible design.
 CMA_SIGMA = 0.05
 CMA_POPULATION = 32  # three times pycma's own: a population costs hardly more than a few designs
-STEP = 0.01  # of every variable: m, and 1 for the gear ratio (Eq. 18)
+TRIAL_STEP = 0.01  # of every variable: m, and 1 for the gear ratio (Eq. 18)
 PATIENCE = 10_000  # feasible trials in a row without improvement
 _SMALLEST_BLOCK, _LARGEST_BLOCK = 16, 2048
 _SAMPLE = 2000  # random designs tried at once for a feasible one
@@ -31,7 +31,7 @@ class BudgetSpentError(Exception):
 
 
 @dataclass(frozen=True)
-class Result:
+class SearchResult:
     """Outcome of one search.
 
     x: shape (variables,). merit: see Problem.merit. history: evaluations and merit at each improvement, shape (k, 2).
@@ -85,7 +85,7 @@ class Search:
         if self._counted:
             self._counted(len(merit))
 
-    def result(self) -> Result:
+    def result(self) -> SearchResult:
         """The best design so far. Raises InputError, saying what stood in the way, if none was feasible."""
         broken = self.problem.violations_text(self.best_x)
         if broken:
@@ -94,7 +94,7 @@ class Search:
                 f"no feasible {kind} found in {self.evaluations} evaluations; the closest violates: {broken}. "
                 "Loosen a limit, widen the design space or raise the budget"
             )
-        return Result(self.best_x, self.best, self.evaluations, np.array(self._history))
+        return SearchResult(self.best_x, self.best, self.evaluations, np.array(self._history))
 
 
 def feasible_start(search: Search, random: np.random.Generator) -> FloatArray:
@@ -132,7 +132,7 @@ def differential(search: Search, start: Start, random: np.random.Generator) -> N
             lambda x: -search(x.T, *to_beat),
             bounds,
             x0=None if start is None else np.clip(start[: len(bounds)], *bounds.T),
-            popsize=POPULATION,
+            popsize=POPULATION_FACTOR,
             maxiter=search.budget,
             tol=1e-6,
             mutation=(0.4, 0.9),
@@ -180,7 +180,7 @@ def random_pursuit(search: Search, start: Start, random: np.random.Generator, pa
     start = feasible_start(search, random) if start is None else start
     search(start[None])
     while failures < patience and search.evaluations < search.budget:
-        x = search.best_x + random.uniform(-STEP, STEP, (block, len(start)))
+        x = search.best_x + random.uniform(-TRIAL_STEP, TRIAL_STEP, (block, len(start)))
         evaluation = problem.evaluate(x[: search.budget - search.evaluations])
         merit = problem.merit(evaluation)
         better = np.flatnonzero(merit > search.best)

@@ -17,7 +17,7 @@ from fes_mj.linkage.kinematics import solve
 from fes_mj.muscles.anatomy import anatomy
 from fes_mj.muscles.power import best_power, best_turn
 from fes_mj.muscles.riders import Riders
-from fes_mj.muscles.timing import ANGLES, DUTY, widths_up_to
+from fes_mj.muscles.timing import DUTY, TURN_ANGLES, widths_up_to
 from fes_mj.optimization.buildable import pin_force
 from fes_mj.statics.cycles import Cycles
 
@@ -75,4 +75,4 @@ class MuscleDrive:
     def pin_force(self, design: Design) -> float:
         """Largest on any pin while riding with masses, N, of a design that turns: by the few's expected moments."""
         turn, _ = best_turn(self.few, design, duty=self.duty)
-        return pin_force(solve(design, ANGLES), turn.moment.map(lambda moment: moment[:, 0].mean(axis=0)))
+        return pin_force(solve(design, TURN_ANGLES), turn.moment.map(lambda moment: moment[:, 0].mean(axis=0)))

@@ -22,7 +22,7 @@ from fes_mj.statics.work_table import WorkTable
 
 MANUFACTURING = 0.001  # m, each length and each coordinate of R1 and R7
 LEG = 0.05  # m, thigh and shank independently
-SAMPLES = 4000  # the 5th percentile of power is then known to about 1 % of the spread
+POWER_SAMPLES = 4000  # the 5th percentile of power is then known to about 1 % of the spread
 PERCENTILE = 5.0
 
 
@@ -57,7 +57,7 @@ class Tolerance(NamedTuple):
 def to_manufacturing(design: Design, table: WorkTable, random: np.random.Generator) -> Tolerance:
     """All lengths of the linkage off by up to MANUFACTURING, uniformly and independently."""
     drawn = lengths(design)
-    shift = random.uniform(-MANUFACTURING, MANUFACTURING, (SAMPLES, len(drawn)))
+    shift = random.uniform(-MANUFACTURING, MANUFACTURING, (POWER_SAMPLES, len(drawn)))
     if design.linkage.kind == "trt":
         shift *= drawn != 0  # R7, R8, R9 and R10 do not exist, and are zero in it
     return _tolerance(with_lengths(design, (drawn + shift).T[..., None]), table)
@@ -65,7 +65,7 @@ def to_manufacturing(design: Design, table: WorkTable, random: np.random.Generat
 
 def to_rider(design: Design, table: WorkTable, random: np.random.Generator) -> Tolerance:
     """Thigh and shank longer or shorter by up to LEG, uniformly and independently."""
-    shift = random.uniform(-LEG, LEG, (2, SAMPLES, 1))
+    shift = random.uniform(-LEG, LEG, (2, POWER_SAMPLES, 1))
     legs = {"thigh": design.rider.thigh + shift[0], "shank": design.rider.shank + shift[1]}
     return _tolerance(design.with_rider(**legs), table)
 

@@ -8,9 +8,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fes_mj.budget.answer import Answer
-from fes_mj.common.style import BY_DESIGN, COLOURS, FAINT, PARTS
+from fes_mj.common.style import BY_DESIGN, COLOURS, FAINT, PART_COLOURS
 from fes_mj.linkage.design_file import SIX_BARS
-from fes_mj.moments.joint_moments import GROUPS
+from fes_mj.moments.joint_moments import RIDER_GROUPS
 from fes_mj.paper.error_budget import GAINS, Budgets, ratios
 
 _RATIOS = np.linspace(0, 3, 301)
@@ -22,7 +22,7 @@ def budget_figure(budgets: Budgets) -> Figure:
     """Shares of the variance as stacked bars; below, the probability that the power per the TRT's is above a ratio."""
     figure = Figure(figsize=(7.2, 7.0), layout="constrained")
     axes: Any = figure.subplots(2, 2, sharey="row")
-    for (bars, curves), group in zip(axes.T, GROUPS, strict=True):
+    for (bars, curves), group in zip(axes.T, RIDER_GROUPS, strict=True):
         _bars(bars, budgets, group)
         _curves(curves, budgets, group)
         for ax, title in ((bars, "everything drawn"), (curves, "power per TRT's")):
@@ -36,8 +36,8 @@ def budget_figure(budgets: Budgets) -> Figure:
 def answer_figure(answers: Mapping[tuple[str, str], Answer]) -> Figure:
     """Both powers of every six-bar per the TRT's, with their intervals, a panel a group."""
     figure = Figure(figsize=(7.2, 2.9), layout="constrained")
-    axes: Any = figure.subplots(1, len(GROUPS), sharey=True)
-    for ax, group in zip(axes, GROUPS, strict=True):
+    axes: Any = figure.subplots(1, len(RIDER_GROUPS), sharey=True)
+    for ax, group in zip(axes, RIDER_GROUPS, strict=True):
         per_trt = [answers[name, group].per(answers["trt", group]) for name in SIX_BARS]
         for place, (label, colour) in enumerate(zip(_BOTH, (COLOURS["quasi-static"], COLOURS["mujoco"]), strict=True)):
             value, low, high = np.array([both[place] for both in per_trt], float).T
@@ -58,7 +58,7 @@ def _bars(ax: Axes, budgets: Budgets, group: str) -> None:
     blame = [budgets[name, group].shares for name in designs]
     parts = {unknown: np.array([max(0.0, shares[unknown].first) for shares in blame]) for unknown in blame[0]}
     parts["several together"] = np.maximum(0.0, 1 - sum(parts.values()))
-    for (unknown, part), colour in zip(parts.items(), PARTS, strict=False):
+    for (unknown, part), colour in zip(parts.items(), PART_COLOURS, strict=False):
         ax.bar([name.upper() for name in designs], 100 * part, bottom=bottom, color=colour, label=unknown, width=0.7)
         bottom += 100 * part
     ax.grid(axis="x", visible=False)

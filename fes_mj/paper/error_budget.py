@@ -11,7 +11,7 @@ from fes_mj.budget.unknowns import priors
 from fes_mj.common.arrays import FloatArray
 from fes_mj.common.console import track
 from fes_mj.linkage.design_file import SIX_BARS
-from fes_mj.moments.joint_moments import GROUPS
+from fes_mj.moments.joint_moments import RIDER_GROUPS
 from fes_mj.moments.uncertainty import with_sd
 from fes_mj.paper.captions import Rows, table
 from fes_mj.statics.turn import QuasiStatic
@@ -75,7 +75,7 @@ def ratios(budgets: Budgets, name: str, group: str, base: str = "trt") -> FloatA
 @table("probability", gain=[f"{100 * (gain - 1):.0f}" for gain in GAINS])
 def probability_table(budgets: Budgets) -> Rows:
     """How probably each six-bar beats the TRT by so much; what does not turn beats nothing."""
-    for name, group in product(SIX_BARS, GROUPS):
+    for name, group in product(SIX_BARS, RIDER_GROUPS):
         ratio = ratios(budgets, name, group)
         spread = Spread.of(ratio)
         chances = (100 * float(np.mean(ratio > gain)) for gain in GAINS)
@@ -85,6 +85,6 @@ def probability_table(budgets: Budgets) -> Rows:
 @table("better")
 def better_table(budgets: Budgets) -> Rows:
     """How probably D1, the paper's choice, delivers more than each other six-bar."""
-    for group in GROUPS:
+    for group in RIDER_GROUPS:
         others = (ratios(budgets, "d1", group, other) for other in ("r1", "r2", "d2"))
         yield group, *(100 * float(np.mean(ratio > 1)) for ratio in others)

@@ -13,7 +13,7 @@ from fes_mj.linkage import kinematics
 from fes_mj.linkage.design_file import DESIGNS, load_design
 from fes_mj.linkage.joints import JOINTS
 from fes_mj.moments.fourier import fourier
-from fes_mj.moments.joint_moments import GROUPS
+from fes_mj.moments.joint_moments import RIDER_GROUPS
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.moments.uncertainty import power_weights
 
@@ -54,7 +54,7 @@ def load_evidence(path: Path = DATA / "evidence.toml") -> list[Evidence]:
         rows.append(_row(Section(path, f"evidence {str(table.get('name', number))[:40]!r}", table), sources))
         if rows[-1].name in {row.name for row in rows[:-1]}:
             raise InputError(f"{path}: evidence {rows[-1].name!r} is given twice; give each row a name of its own")
-    if missing := [group for group in GROUPS if group not in {row.group for row in rows}]:
+    if missing := [group for group in RIDER_GROUPS if group not in {row.group for row in rows}]:
         raise InputError(f"{path}: there is no evidence for group {missing[0]!r}; both groups need some")
     return rows
 
@@ -72,7 +72,7 @@ def _row(table: Section, sources: dict[str, str]) -> Evidence:
     if not isinstance(table.content["name"], str):
         table.refuse("name", str(table.content["name"])[:40], "a text")
     quantity = table.choice("quantity", UNITS)
-    for key, choices in {"group": GROUPS, "unit": (UNITS[quantity],), "source": tuple(sources)}.items():
+    for key, choices in {"group": RIDER_GROUPS, "unit": (UNITS[quantity],), "source": tuple(sources)}.items():
         table.choice(key, choices)
     table.number("value", -LARGEST_NUMBER, LARGEST_NUMBER, f"a finite number, at most {LARGEST_NUMBER:g}")
     positive = f"a number above 0, at most {LARGEST_NUMBER:g}"

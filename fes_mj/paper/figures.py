@@ -15,7 +15,7 @@ from fes_mj.linkage.design_file import SIX_BARS
 from fes_mj.linkage.joints import JOINTS
 from fes_mj.linkage.kinematics import solve
 from fes_mj.moments.fourier import TERMS
-from fes_mj.moments.joint_moments import GROUPS
+from fes_mj.moments.joint_moments import RIDER_GROUPS
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.moments.uncertainty import instant_power_weights
 from fes_mj.paper.budget_figure import answer_figure, budget_figure
@@ -143,7 +143,7 @@ def scores(runs: Runs) -> Figure:
     """Printed powers predicted without themselves, in standard deviations: are the stated errors right?"""
     figure, axes = _grid(1, 2, (7.2, 3.4))
     for number, (ax, title) in enumerate(zip(axes.flat, BASES, strict=True)):
-        for group, marker, colour in zip(GROUPS, "os", MOMENTS, strict=False):
+        for group, marker, colour in zip(RIDER_GROUPS, "os", MOMENTS, strict=False):
             rows = [out for out in runs.known.predictions if out.row.group == group]
             values = np.array([out.scores[number] for out in rows])
             label = f"{group.upper()}, rms {rms(values):.2f}"
@@ -164,11 +164,11 @@ def riding(runs: Runs) -> Figure:
     """Speed on the flat and slope climbed, fixed gear and freewheel, with the scatter of the muscles drawn."""
     figure, axes = _grid(1, 3, (7.2, 3.0), sharey=False)
     for ax, (title, values_of) in zip(axes.flat, RIDING.items(), strict=True):
-        for row, (group, transmission) in enumerate(product(GROUPS, TRANSMISSIONS)):
+        for row, (group, transmission) in enumerate(product(RIDER_GROUPS, TRANSMISSIONS)):
             rides = [ride for ride in runs.rides if (ride.group, ride.transmission) == (group, transmission)]
             values = [np.array(values_of(ride), float) for ride in rides]  # None becomes NaN
             places = np.arange(len(rides)) + 0.18 * (row - 1.5)
-            colour, label = MOMENTS[GROUPS.index(group)], f"{group.upper()}, {transmission}"
+            colour, label = MOMENTS[RIDER_GROUPS.index(group)], f"{group.upper()}, {transmission}"
             for place, (_, *drawn) in zip(places, values, strict=True):
                 ax.plot(np.full(len(drawn), place), drawn, ".", color=colour, ms=2, alpha=0.5)
             face = colour if transmission == "fixed" else "white"
@@ -263,7 +263,7 @@ def _powers(axes: Any, runs: Runs, name: str) -> None:
         _band(ax, angle, (both[0], both[1]), "quasi-static", "both, quasi-static")
         mean_power, deviation = posterior.predict(static.power_weights)
         _turn(ax, f"{name.upper()}, {group.upper()}, {title}: {mean_power:.1f} ± {deviation:.1f} W")
-    for ax, residual, group in zip(*axes[1:], GROUPS, strict=True):
+    for ax, residual, group in zip(*axes[1:], RIDER_GROUPS, strict=True):
         _simulated(ax, residual, runs.dynamic[name, group, 1])
         _turn(residual, "", "residual, W")
 

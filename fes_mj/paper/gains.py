@@ -11,7 +11,7 @@ from fes_mj.linkage.design_file import DIMENSIONS, SIX_BARS, load_design
 from fes_mj.linkage.legs import TWO_LEGS
 from fes_mj.linkage.variables import LENGTHS, lengths, with_lengths
 from fes_mj.moments.files import load_moments
-from fes_mj.moments.joint_moments import GROUPS, JointMoments
+from fes_mj.moments.joint_moments import RIDER_GROUPS, JointMoments
 from fes_mj.moments.uncertainty import with_sd
 from fes_mj.paper.captions import Rows, table
 from fes_mj.paper.runs import Runs, joint_speed
@@ -33,7 +33,7 @@ _CM = 100.0  # in a metre
 @table("speed")
 def knee_speed_table(runs: Runs) -> Rows:
     """Gain over the TRT as the paper has it, and at the TRT's mean knee speed."""
-    for name, group in product(SIX_BARS, GROUPS):
+    for name, group in product(SIX_BARS, RIDER_GROUPS):
         result, trt = runs.static[name, group], runs.static["trt", group]
         knee_speed = joint_speed(trt, "knee")[0]
         geared = (result, at_knee_speed(result, knee_speed))

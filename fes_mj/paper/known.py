@@ -15,7 +15,7 @@ from fes_mj.linkage.design_file import SIX_BARS, load_design
 from fes_mj.linkage.kinematics import solve
 from fes_mj.linkage.variables import LENGTHS, replaced
 from fes_mj.moments.files import sampled_coefficients
-from fes_mj.moments.joint_moments import GROUPS
+from fes_mj.moments.joint_moments import RIDER_GROUPS
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.moments.uncertainty import power_weights
 from fes_mj.paper.evidence import Evidence, functional, of_group
@@ -89,8 +89,8 @@ class Known:
 def known(evidence: list[Evidence]) -> Known:
     """From the evidence and from the curves that ship."""
     random, (hyperparameters, posteriors) = np.random.default_rng(_SEED), reconstruct(evidence)
-    before = {group: draw(of_group(evidence, group), hyperparameters, random, _CURVES) for group in GROUPS}
-    after = {group: sampled_coefficients(group) for group in GROUPS}
+    before = {group: draw(of_group(evidence, group), hyperparameters, random, _CURVES) for group in RIDER_GROUPS}
+    after = {group: sampled_coefficients(group) for group in RIDER_GROUPS}
     with_text = Recovered({group: Posterior.of(curves) for group, curves in after.items()}, after)
     predictions = left_out(evidence, hyperparameters)
     return Known(evidence, hyperparameters, Recovered(posteriors, before), with_text, predictions)

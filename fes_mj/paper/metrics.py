@@ -9,7 +9,7 @@ from fes_mj.common.arrays import FloatArray
 from fes_mj.common.markdown import Table
 from fes_mj.linkage.assembly import transmission_angles
 from fes_mj.moments.fourier import fourier
-from fes_mj.moments.joint_moments import GROUPS
+from fes_mj.moments.joint_moments import RIDER_GROUPS
 from fes_mj.moments.uncertainty import instant_power_weights, with_sd
 from fes_mj.paper.captions import Rows, captioned, table
 from fes_mj.paper.evidence import of_joint
@@ -61,7 +61,7 @@ def distribution(power: FloatArray) -> tuple[FloatArray, ...]:
 
 def ranking_table(runs: Runs) -> Table:
     """A ranking with stated weights, and how much it depends on them."""
-    results = {name: [runs.static[name, group] for group in GROUPS] for name in _by_design(runs)}
+    results = {name: [runs.static[name, group] for group in RIDER_GROUPS] for name in _by_design(runs)}
 
     def smoothing_loss(pair: list[QuasiStatic]) -> float:
         costs = (
@@ -114,4 +114,4 @@ def smoothing_weights(result: QuasiStatic, width: float) -> FloatArray:
 
 def _by_design(runs: Runs) -> dict[str, QuasiStatic]:
     """One result a design, for what does not depend on the moments."""
-    return {name: result for (name, group), result in runs.static.items() if group == GROUPS[0]}
+    return {name: result for (name, group), result in runs.static.items() if group == RIDER_GROUPS[0]}

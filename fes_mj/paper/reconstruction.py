@@ -15,7 +15,7 @@ from scipy.special import ive
 from fes_mj.common.arrays import BoolArray, FloatArray
 from fes_mj.common.errors import InputError
 from fes_mj.moments.fourier import HARMONICS, TERMS, fourier
-from fes_mj.moments.joint_moments import GROUPS
+from fes_mj.moments.joint_moments import RIDER_GROUPS
 from fes_mj.moments.uncertainty import standard_deviation
 from fes_mj.paper.evidence import Evidence, functional, of_group, of_joint
 
@@ -135,7 +135,7 @@ def reconstruct(evidence: list[Evidence]) -> tuple[Hyperparameters, dict[str, Po
     """
     chosen = choose_hyperparameters(evidence)
     misses: dict[str, float] = {}
-    for group in GROUPS:
+    for group in RIDER_GROUPS:
         rows = of_group(evidence, group)
         misses |= dict(zip([row.name for row in rows], left_out_misses(rows, chosen).tolist(), strict=True))
     name, miss = max(misses.items(), key=lambda item: abs(item[1]))
@@ -144,7 +144,7 @@ def reconstruct(evidence: list[Evidence]) -> tuple[Hyperparameters, dict[str, Po
             f"evidence {name!r} contradicts the rest: it lies {abs(miss):.1f} standard deviations from what the other "
             f"rows predict, {LARGEST_MISS:g} is allowed; correct its value, or give it the error it has"
         )
-    return chosen, {group: condition(of_group(evidence, group), chosen) for group in GROUPS}
+    return chosen, {group: condition(of_group(evidence, group), chosen) for group in RIDER_GROUPS}
 
 
 def left_out_misses(rows: list[Evidence], hyperparameters: Hyperparameters) -> FloatArray:
@@ -182,7 +182,7 @@ def choose_hyperparameters(rows: list[Evidence]) -> Hyperparameters:
 
     More digits than the likelihood knows, and the same wherever the search runs.
     """
-    return most_likely([System.of(of_group(rows, group)) for group in GROUPS])
+    return most_likely([System.of(of_group(rows, group)) for group in RIDER_GROUPS])
 
 
 def most_likely(systems: list[System]) -> Hyperparameters:

@@ -11,7 +11,7 @@ import numpy as np
 
 from fes_mj.linkage.design_file import load_design
 from fes_mj.moments.fourier import fourier
-from fes_mj.moments.joint_moments import GROUPS
+from fes_mj.moments.joint_moments import RIDER_GROUPS
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.moments.uncertainty import with_sd
 from fes_mj.paper.captions import Rows, table
@@ -37,7 +37,7 @@ def evidence_table(known: Known) -> Rows:
 @table("statement")
 def statement_table(known: Known) -> Rows:
     """What the text says of the figures beside curves of the numbers alone, and those that fulfil all of it."""
-    for group in GROUPS:
+    for group in RIDER_GROUPS:
         for statement in load_statements(group):
             values = [statement.value(recovered.curves[group]) for recovered in (known.numbers, known.text)]
             numbers, text = (with_sd(float(value.mean()), float(value.std())) for value in values)
@@ -50,7 +50,7 @@ def knee_table(known: Known) -> Rows:
     """Section 7.2's two knee moments, which are evidence of one group, in both."""
     for name, direction, printed in (("extending", 1.0, 20.0), ("flexing", -1.0, -1.0)):
         weights = of_joint("knee", fourier(PAPER_TRICYCLE.source_angle("knee", np.radians(73.0), direction)))
-        for group in GROUPS:
+        for group in RIDER_GROUPS:
             cells = (with_sd(*recovered.posteriors[group].predict(weights), 1) for recovered in known.by_basis.values())
             yield name, group, printed, *cells, "used" if group == "p1p2" else "not used"
 
@@ -75,24 +75,24 @@ def left_out_table(known: Known) -> Rows:
 @table("calibration")
 def calibration_table(known: Known) -> Rows:
     """Root mean square of the scores, by group and over both."""
-    for title, groups in (*((group, (group,)) for group in GROUPS), ("both", GROUPS)):
+    for title, groups in (*((group, (group,)) for group in RIDER_GROUPS), ("both", RIDER_GROUPS)):
         of_groups = np.array([out.scores for out in known.predictions if out.row.group in groups])
         yield title, len(of_groups), *rms(of_groups).tolist()
 
 
-@table("sensitivity", group=GROUPS)
+@table("sensitivity", group=RIDER_GROUPS)
 def sensitivity_table(known: Known) -> Rows:
     """The prior chosen otherwise: likelihood, scores, what the text allows, and D1's gain over the TRT.
 
     The last case takes its errors from the powers within the rounding of Table 2.
     """
     chosen = known.hyperparameters
-    data = {group: of_group(known.evidence, group) for group in GROUPS}
+    data = {group: of_group(known.evidence, group) for group in RIDER_GROUPS}
     priors = {"chosen": chosen}
     priors |= {f"length {length:g}": replace(chosen, length=length) for length in (0.3, 0.5, 0.8, 1.6)}
     priors |= {f"amplitude {factor:g} x": replace(chosen, amplitude=factor * chosen.amplitude) for factor in (0.5, 2.0)}
     priors |= {f"six-bars' hip off by {d:g} N m": replace(chosen, discrepancy=d) for d in (1.0, 3.0)}
-    cases = [(title, data, dict.fromkeys(GROUPS, prior)) for title, prior in priors.items()]
+    cases = [(title, data, dict.fromkeys(RIDER_GROUPS, prior)) for title, prior in priors.items()]
     apart = {group: most_likely([System.of(rows)]) for group, rows in data.items()}
     cases.append(("a prior for each group", data, apart))
     errors = {key: math.hypot(0.1, rms(change)) for key, change in known.rounding.items()}  # and that of reading curves
@@ -101,7 +101,7 @@ def sensitivity_table(known: Known) -> Rows:
         for group, rows in data.items()
     }
     common = most_likely([System.of(rows) for rows in rounded.values()])
-    cases.append(("six-bars' errors by their rounding", rounded, dict.fromkeys(GROUPS, common)))
+    cases.append(("six-bars' errors by their rounding", rounded, dict.fromkeys(RIDER_GROUPS, common)))
     return [_case(*case) for case in cases]
 
 

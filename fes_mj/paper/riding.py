@@ -22,7 +22,7 @@ from fes_mj.linkage.design import Design
 from fes_mj.linkage.design_file import DESIGNS, load_design
 from fes_mj.linkage.variables import replaced, runnable
 from fes_mj.moments.files import load_moments
-from fes_mj.moments.joint_moments import GROUPS
+from fes_mj.moments.joint_moments import RIDER_GROUPS
 from fes_mj.moments.uncertainty import with_sd
 from fes_mj.muscles.drive import Muscles, load_muscles
 from fes_mj.paper.captions import Rows, table
@@ -76,8 +76,8 @@ class Gear(NamedTuple):
 def ride_all(silent: bool) -> list[Riding]:
     """All rides. Raises MissingPartError without numba."""
     require_extra("optimize", "numba")
-    muscles = {group: load_muscles(group) for group in GROUPS}
-    cases = track([*product(GROUPS, DESIGNS, TRANSMISSIONS)], "rides", silent)
+    muscles = {group: load_muscles(group) for group in RIDER_GROUPS}
+    cases = track([*product(RIDER_GROUPS, DESIGNS, TRANSMISSIONS)], "rides", silent)
     return [_riding(load_design(name), group, muscles[group], kind) for group, name, kind in cases]
 
 

@@ -13,7 +13,7 @@ from fes_mj.crosscheck.turn_case import Case
 from fes_mj.fit.population import PopulationFit, fit_population
 from fes_mj.linkage.design_file import DESIGNS, load_design
 from fes_mj.moments.files import load_moments
-from fes_mj.moments.joint_moments import GROUPS
+from fes_mj.moments.joint_moments import RIDER_GROUPS
 from fes_mj.muscles.riders import load_riders
 from fes_mj.paper import error_budget, identification, riding
 from fes_mj.paper.evidence import load_evidence
@@ -42,10 +42,10 @@ class Runs:
 def run_all(silent: bool) -> Runs:
     """Solve and simulate everything, with a bar for each kind of run unless `silent`."""
     readings, rides = identification.read_all(silent), riding.ride_all(silent)
-    moments = {group: load_moments(group) for group in GROUPS}
+    moments = {group: load_moments(group) for group in RIDER_GROUPS}
     static, printed = {}, {}
     dynamic: dict[tuple[str, str, int], Case] = {}
-    for name, group in product(DESIGNS, GROUPS):
+    for name, group in product(DESIGNS, RIDER_GROUPS):
         key, design = (name, group), load_design(name)
         static[key] = quasi_static(design, moments[group])
         with suppress(AssemblyError):
@@ -58,7 +58,8 @@ def run_all(silent: bool) -> Runs:
         for key, result in track([*static.items()], "riders", silent)
     }
     people = {
-        name: fit_population(load_design(name), moments[GROUPS[0]]) for name in track(DESIGNS, "populations", silent)
+        name: fit_population(load_design(name), moments[RIDER_GROUPS[0]])
+        for name in track(DESIGNS, "populations", silent)
     }
     budgets = error_budget.draw_all(static, silent)
     return Runs(known(load_evidence()), static, printed, dynamic, answers, people, rides, budgets, readings)

@@ -19,7 +19,7 @@ from fes_mj.linkage.design_file import load_design
 from fes_mj.linkage.joints import JOINTS
 from fes_mj.linkage.kinematics import solve
 from fes_mj.moments.fourier import TERMS
-from fes_mj.moments.joint_moments import GROUPS
+from fes_mj.moments.joint_moments import RIDER_GROUPS
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.moments.uncertainty import instant_power_weights
 from fes_mj.paper.evidence import Evidence
@@ -112,7 +112,7 @@ def allowed_share(rows: list[Evidence], group: str, hyperparameters: Hyperparame
 
 def _batches(rows: list[Evidence], group: str, hyperparameters: Hyperparameters) -> Iterator[FloatArray]:
     """What the text leaves of one batch of curves after the other."""
-    statements, random = load_statements(group), np.random.default_rng([SEED, GROUPS.index(group)])
+    statements, random = load_statements(group), np.random.default_rng([SEED, RIDER_GROUPS.index(group)])
     while True:
         curves = draw(rows, hyperparameters, random, _BATCH)
         for statement in statements:

@@ -11,7 +11,7 @@ from fes_mj.fit.population import GRADES, PEOPLE, SEATS, PopulationFit
 from fes_mj.linkage.design import Rider
 from fes_mj.linkage.design_file import SIX_BARS
 from fes_mj.linkage.riders import populations
-from fes_mj.moments.joint_moments import GROUPS
+from fes_mj.moments.joint_moments import RIDER_GROUPS
 from fes_mj.paper.captions import Rows, captioned, table
 from fes_mj.paper.printed import table1
 from fes_mj.paper.runs import Runs, joint_speed
@@ -58,7 +58,7 @@ def explained_by(difference: float, deviation: float) -> str:
 @table("gain")
 def gain_table(runs: Runs) -> Rows:
     """Power of every six-bar per the TRT's: paper, ours, and the split into cadence and work per turn."""
-    for name, group in product(SIX_BARS, GROUPS):
+    for name, group in product(SIX_BARS, RIDER_GROUPS):
         result, trt = runs.static[name, group], runs.static["trt", group]
         paper = table1()[name].power[group] / table1()["trt"].power[group]
         gain = result.power_mean / trt.power_mean
@@ -66,11 +66,11 @@ def gain_table(runs: Runs) -> Rows:
         yield name.upper(), group, paper, gain, ratio_sd(result, trt), cadence, work
 
 
-@table("motion", group=GROUPS)
+@table("motion", group=RIDER_GROUPS)
 def motion_table(runs: Runs) -> Rows:
     """Cadence, work per turn, and joint speeds of every design."""
     for name in table1():
-        results = [runs.static[name, group] for group in GROUPS]
+        results = [runs.static[name, group] for group in RIDER_GROUPS]
         knee, hip = (np.degrees(joint_speed(results[0], joint)) for joint in ("knee", "hip"))
         yield name.upper(), results[0].cadence / RPM, *(result.work_per_turn for result in results), *knee, *hip
 

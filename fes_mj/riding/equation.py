@@ -23,9 +23,9 @@ from fes_mj.riding.muscle_table import driven_by
 from fes_mj.riding.ride import Load, Ride
 from fes_mj.riding.stimulated import NO_STIMULATOR, StimulatedRider, Stimulator, lead
 
-TOUCH = 1e-12  # m/s: rounding, by which a crank that has just caught up may be too fast or too slow
+SPEED_ROUNDING = 1e-12  # m/s: rounding, by which a crank that has just caught up may be too fast or too slow
 LONGEST, LONGEST_FREE = 0.016, math.radians(2.0)  # s, of a step: where the crank is slow; rad: where it runs free
-QUICK = 0.25  # of the time constant of a rise, that no step is longer than
+RISE_SHARE = 0.25  # of the time constant of a rise, that no step is longer than
 # A crank that runs free where the legs' inertia grows or falls many times within a degree: what the table chooses its
 # steps by, a crank that turns evenly, knows nothing of it. Of the crank's speed in a step, per itself.
 SPEED_TOLERANCE = 1e-5
@@ -72,7 +72,7 @@ def system(ride: Ride, fineness: int) -> System:
     """The equation of motion of a ride. fineness: divides steps and the table's cells."""
     table = leg_table(ride.design, ride.drive, fineness)
     stimulator = ride.drive.stimulator if isinstance(ride.drive, StimulatedRider) else NO_STIMULATOR
-    longest = min(LONGEST, QUICK * stimulator.rise)
+    longest = min(LONGEST, RISE_SHARE * stimulator.rise)
     return System(
         table=table,
         stimulator=stimulator,
@@ -176,7 +176,7 @@ def margins(system: System, state: State, mode: Mode, push: float) -> tuple[floa
     """
     transmission, road = 1.0, mode.direction * state.speed
     if not mode.engaged:
-        transmission = state.speed + TOUCH - state.crank_speed * system.travel
+        transmission = state.speed + SPEED_ROUNDING - state.crank_speed * system.travel
     elif not system.fixed:
         transmission = push
     if mode.direction == 0:
@@ -196,7 +196,7 @@ def mode_of(system: System, state: State) -> Mode:
     """The mode in which a state goes on."""
     fixed, travel, load = system.fixed, system.travel, system.load
     direction = driven(state.speed, 0.0)
-    together = fixed or state.crank_speed * travel >= state.speed - TOUCH
+    together = fixed or state.crank_speed * travel >= state.speed - SPEED_ROUNDING
     if together and direction != 0:
         _, push = rates_of(system, state, Mode(True, direction))
         return Mode(fixed or push >= 0, direction)

@@ -17,7 +17,7 @@ from fes_mj.linkage.design import Design
 from fes_mj.linkage.inertia import CrankInertia, crank_inertia
 from fes_mj.linkage.joints import JOINTS, PerJoint
 from fes_mj.linkage.legs import TWO_LEGS, Leg, all_legs, delayed
-from fes_mj.moments.drive import POINTS, breaks, driven
+from fes_mj.moments.drive import DRIVE_POINTS, breaks, driven
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.riding.muscle_table import NO_MUSCLES, MuscleTable, at_rest, muscle_table
 from fes_mj.riding.stimulated import StimulatedRider, felt_over
@@ -26,7 +26,7 @@ from fes_mj.riding.stimulated import StimulatedRider, felt_over
 # of the largest inertia and recoil; those of all cells, or steps, are added up without their own signs.
 CELL_TOLERANCE, STEP_TOLERANCE = 1e-5, 1e-4
 LEAST_PUSH = 1e-3  # N m, of moments that are next to nothing
-MOST_CELLS = 64 * POINTS
+MOST_CELLS = 64 * DRIVE_POINTS
 LONGEST_STEP = math.radians(4.0)
 REST_POINTS = 360  # crank angles at which stimulation at a stand is known
 
@@ -55,7 +55,7 @@ def leg_table(design: Design, drive: JointMoments | StimulatedRider, fineness: i
 
     Raises InputError where not even MOST_CELLS are enough.
     """
-    cells, legs = POINTS, _legs(design, drive, POINTS)
+    cells, legs = DRIVE_POINTS, _legs(design, drive, DRIVE_POINTS)
     while _cell_error(legs.curves) > CELL_TOLERANCE:
         cells *= 2
         if cells > MOST_CELLS:

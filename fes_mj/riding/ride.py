@@ -20,7 +20,7 @@ from fes_mj.statics.turn import LegTurns
 from fes_mj.statics.validity import turning_in_range
 
 TRANSMISSIONS = ("freewheel", "fixed")
-SHORTEST = 1e-6  # s, of a ride
+SHORTEST_RIDE = 1e-6  # s, of a ride
 AIR_DENSITY = 1.2  # kg/m^3, at 20 deg C and sea level
 
 
@@ -115,7 +115,7 @@ class Ride(Brief):
 
         InputError also for a transmission that is none, and numbers that are.
         """
-        require_within("duration", self.duration, SHORTEST, unit="s")
+        require_within("duration", self.duration, SHORTEST_RIDE, unit="s")
         require_within("launch", self.launch, 0, unit="m/s")
         require_within("start", self.start, -math.inf, unit="rad")
         self.road.require_possible()

@@ -12,8 +12,8 @@ from fes_mj.riding.muscle_table import MuscleTable
 from fes_mj.riding.ride import Load
 
 STANDING = 1e-9  # rad/s: a crank that is slower takes no step by its angle
-NEAR = 1e-9  # rad: rounding, by which a step may miss the end of a cell
-SHORTEST = 1e-7  # s, of a step that is made shorter for this
+ANGLE_ROUNDING = 1e-9  # rad: rounding, by which a step may miss the end of a cell
+SHORTEST_STEP = 1e-7  # s, of a step that is made shorter for this
 EVENT = 2.0**-14  # of a step, within which an event in it is found
 
 # What is kept of a state at each step: fields of a Trace.
@@ -74,7 +74,7 @@ def tried(
     time, whole = min(longest, trusted), True
     while True:
         step = stepped(system, start, first, mode, time)
-        if step.error > system.tolerance and time > SHORTEST:
+        if step.error > system.tolerance and time > SHORTEST_STEP:
             time *= fitting(step.error / system.tolerance)
             trusted = time
             continue
@@ -126,7 +126,7 @@ def longest_step(system: System, state: State, rates: State, mode: Mode) -> floa
     """Time of the next step, s: to where the table ends it, at the acceleration at its begin."""
     table, angle, speed = system.table, state.crank_angle % (2 * math.pi), state.crank_speed
     row, _ = place(angle, len(table.ahead))
-    reach: float = max(table.ahead[row] - angle if speed > 0 else angle - table.behind[row], NEAR)
+    reach: float = max(table.ahead[row] - angle if speed > 0 else angle - table.behind[row], ANGLE_ROUNDING)
     if not mode.engaged:
         reach = min(reach, system.free)
     change = rates.crank_speed if speed > 0 else -rates.crank_speed

@@ -14,7 +14,7 @@ from fes_mj.linkage.design import TRICYCLE_SPEED
 from fes_mj.riding.ride import Ride
 from fes_mj.riding.trace import ride as solved
 
-ANGLES = 72  # crank angles that are tried, over half a turn: the legs are alike, half a turn apart
+START_ANGLES = 72  # crank angles that are tried, over half a turn: the legs are alike, half a turn apart
 FASTEST_LAUNCH = 25 * KMH  # m/s
 STEEPEST = 0.3  # rise per run; the steepest streets there are have 0.35
 LAUNCH_STEP, SLOPE_STEP = 0.05 * KMH, 1e-4  # to which launch and slope are sought
@@ -55,7 +55,7 @@ class Starts(Brief):
         }
 
 
-def starts(ride: Ride, angles: int = ANGLES) -> Starts:
+def starts(ride: Ride, angles: int = START_ANGLES) -> Starts:
     """Try rides from rest, launches and slopes. angles: crank angles that are tried, over half a turn.
 
     A faster launch and a gentler slope are taken to do whatever a slower and a steeper one do. Raises InputError as

@@ -27,7 +27,7 @@ from fes_mj.muscles.pull import pull
 from fes_mj.muscles.riders import Riders
 from fes_mj.muscles.rules import BEST, MEASURED, known_motion
 from fes_mj.muscles.step import Stimulus, stimulation
-from fes_mj.muscles.timing import ANGLES, Windows, responded
+from fes_mj.muscles.timing import TURN_ANGLES, Windows, responded
 
 TIMINGS = (BEST, MEASURED)
 
@@ -87,9 +87,9 @@ class StimulatedRider(Brief):
 
     def power_mean(self, design: Design, cadence: float) -> float:
         """Of one leg at a steady cadence, rad/s, W: at the windows' own that of statics."""
-        pulled = pull(self.riders, kinematics.solve(design, ANGLES), cadence)
+        pulled = pull(self.riders, kinematics.solve(design, TURN_ANGLES), cadence)
         active = responded(
-            felt_over(self.stimulator, ANGLES, cadence)[:, None, None], self.riders, np.full((1, 1), cadence)
+            felt_over(self.stimulator, TURN_ANGLES, cadence)[:, None, None], self.riders, np.full((1, 1), cadence)
         )
         return float(MuscleTurn(pulled, active).power_mean.item())
 

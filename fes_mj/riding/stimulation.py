@@ -37,8 +37,8 @@ class Muscle(NamedTuple):
 
 MUSCLES = {"quadriceps": Muscle("knee", 1), "hamstrings": Muscle("knee", -1), "gluteus": Muscle("hip", 1)}
 CORE = 0.5  # of the largest effect in a window: beyond it the joint moves fast enough to be worth fatigue
-LEAST_SHARE = 0.05  # of a muscle's swing over the turn; a window that holds less is not worth a pulse
-POINTS = 3600  # of a turn; the zeros between them are interpolated
+LEAST_SWING = 0.05  # of a muscle's swing over the turn; a window that holds less is not worth a pulse
+WINDOW_POINTS = 3600  # of a turn; the zeros between them are interpolated
 ZERO = "right crank arm points backwards (away from the rider's front); angles grow as the tricycle goes forward"
 
 
@@ -96,7 +96,7 @@ class Window(Brief):
 def stimulation(design: Design, legs: int = 2) -> list[Window]:
     """Windows of every muscle group, of both legs or the right one alone; by muscle, leg, and crank angle.
 
-    Windows that hold less than LEAST_SHARE of the muscle's swing are left out. Raises AssemblyError for a linkage that
+    Windows that hold less than LEAST_SWING of the muscle's swing are left out. Raises AssemblyError for a linkage that
     does not close.
 
     >>> window = fes_mj.stimulation(fes_mj.load_design("d1"))[0]
@@ -104,12 +104,12 @@ def stimulation(design: Design, legs: int = 2) -> list[Window]:
     ('quadriceps', 'right', [315, 444])
     """
     turning(design)
-    angle = kinematics.uniform_turn(POINTS)
+    angle = kinematics.uniform_turn(WINDOW_POINTS)
     rate = kinematics.solve(design, angle).joint_rate
     windows = []
     for name, muscle in MUSCLES.items():
         own = [_window(name, muscle, angle, rate, *ends) for ends in _positive(muscle.sense * rate[muscle.joint])]
-        least = LEAST_SHARE * sum(window.swing for window in own)
+        least = LEAST_SWING * sum(window.swing for window in own)
         worth = [window for window in own if window.swing >= least]
         windows += [window.of(leg) for leg in TWO_LEGS[: len(LEGS[legs])] for window in worth]
     return windows
@@ -119,7 +119,7 @@ def _window(
     name: str, muscle: Muscle, angle: FloatArray, rate: PerJoint[FloatArray], start: float, end: float
 ) -> Window:
     """The window of the right leg between two zeros of the joint's rate."""
-    cell, effect = 2 * math.pi / POINTS, muscle.sense * rate[muscle.joint]
+    cell, effect = 2 * math.pi / WINDOW_POINTS, muscle.sense * rate[muscle.joint]
     inside = (angle - start) % (2 * np.pi) < end - start
     core = start + (angle[inside & (effect >= CORE * effect[inside].max())] - start) % (2 * np.pi)
     both = cell * float((inside & (rate["hip"] > 0)).sum()) if name == "hamstrings" else None

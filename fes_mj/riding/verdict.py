@@ -13,7 +13,7 @@ from fes_mj.riding.trace import LEAST_ADVANCE, Trace
 RIDES, STOPS, DOES_NOT_START, COASTS, NO_AGREEMENT = "rides", "stops", "does-not-start", "coasts", "no-agreement"
 LEAST_DRIVE = 0.1  # of what the road takes, that muscles deliver to a tricycle which rides
 MOST_COASTING = 0.9  # of the time, that the freewheel of one which rides runs free
-ONE_LEG = 0.5  # turns, in which each leg pushes once: who comes no farther from rest has not started
+HALF_TURN = 0.5  # turns, in which each leg pushes once: who comes no farther from rest has not started
 NOT_AT_ALL = math.radians(1.0)  # of crank
 # Twice the cadence at which the moments of the paper's riders were measured, as for the joints.
 FASTEST_CADENCE = 120 * RPM
@@ -30,7 +30,7 @@ class Verdict(NamedTuple):
 def verdict(trace: Trace) -> Verdict:
     """Of a ride by one solver."""
     if not trace.rides:
-        from_rest = trace.ride.launch == 0 and trace.turns < ONE_LEG
+        from_rest = trace.ride.launch == 0 and trace.turns < HALF_TURN
         return Verdict(DOES_NOT_START if from_rest else STOPS, _obstacle(trace))
     downhill = min(trace.ride.load.climb, 0.0) * float(trace.distance[-1])
     taken, delivered = float(trace.road_work[-1]) - downhill, float(trace.muscle_work[-1])

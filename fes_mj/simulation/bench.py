@@ -15,7 +15,7 @@ from fes_mj.linkage.design import Design
 from fes_mj.linkage.joints import JOINTS, PerJoint
 from fes_mj.linkage.legs import LEGS, Leg
 from fes_mj.linkage.torque_source import TorqueSource
-from fes_mj.muscles.anatomy import GROUPS
+from fes_mj.muscles.anatomy import MUSCLE_GROUPS
 from fes_mj.simulation.appearance import Spec
 from fes_mj.simulation.bearings import friction_on_crank
 from fes_mj.simulation.mjcf import REAL, ModelOptions, Physics, build_mjcf
@@ -47,8 +47,8 @@ class Energy:
 class Simulation(Brief):
     """Whole measured turns; arrays have shape (steps,), sampled at the start of each step.
 
-    drive: what moved the legs, and torque, the joint moments that it gave. activation: of the muscle groups (anatomy
-    .GROUPS) of all legs, one after the other, shape (steps, groups of all legs); none of them with joint moments.
+    drive: what moved the legs, and torque, the joint moments that it gave. activation: of the MUSCLE_GROUPS of all
+    legs, one after the other, shape (steps, groups of all legs); none of them with joint moments.
     Dictionaries are by joint name ("hip", "knee", "crank", "rocker", "coupler"; with two legs "right_hip" ...; moments
     only of hips and knees), the loop ones by the name of the cut joint ("pedal", "crank_pin"). A loop's force is
     complex, in the linkage's plane, that of the first body named by Architecture.joints on the second, as
@@ -83,7 +83,7 @@ class Simulation(Brief):
     @property
     def activation_of(self) -> dict[str, FloatArray]:
         """Activation by name of leg and muscle group ("quadriceps", with two legs "right_quadriceps" ...)."""
-        names = [leg.prefix + group for leg in self.legs for group in GROUPS] if self.activation.size else []
+        names = [leg.prefix + group for leg in self.legs for group in MUSCLE_GROUPS] if self.activation.size else []
         return dict(zip(names, self.activation.T, strict=True))
 
     @property
@@ -148,7 +148,7 @@ class BenchOptions:
     pre_roll: int = PRE_ROLL
 
 
-PLAIN = BenchOptions()
+PLAIN_BENCH = BenchOptions()
 
 
 def simulate(
@@ -159,7 +159,7 @@ def simulate(
     timestep: float | None = None,
     turns: float = 1,
     legs: int = 1,
-    options: BenchOptions = PLAIN,
+    options: BenchOptions = PLAIN_BENCH,
 ) -> Simulation:
     """Run turns of the model of build_mjcf (which has the same cadence, timestep and legs) under moments or muscles.
 

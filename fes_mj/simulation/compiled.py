@@ -20,7 +20,7 @@ from fes_mj.linkage.legs import Leg
 from fes_mj.linkage.torque_source import TorqueSource
 from fes_mj.moments.torque_map import TorqueMap, scalar_map
 from fes_mj.simulation.bench import joint_drives
-from fes_mj.simulation.road_control import Memory, RoadControl, act, memory_of
+from fes_mj.simulation.road_control import RoadControl, RoadMemory, act, memory_of
 from fes_mj.simulation.stepping import FORCE_EVERY, Loop, Records, drive_addresses, servos_of
 
 _numba: Any = require_extra("optimize", "numba", "llvmlite")
@@ -190,7 +190,7 @@ def compiled_road_loop(make_control: Callable[[mujoco.MjModel], RoadControl]) ->
 def _road_advance(
     half: float,
     pointers: tuple[int, int],
-    arguments: tuple[RoadControl, Memory],
+    arguments: tuple[RoadControl, RoadMemory],
     fields: Fields,
     sensor_rows: Any,
     force_rows: Any,

@@ -20,8 +20,8 @@ from fes_mj.muscles.power import MuscleTurn
 from fes_mj.muscles.torque import MuscleTorque
 
 RADII = (0.005, 0.3)  # m, of a site from the joint
-FAR = 0.2  # m, of the site along the thigh, where a fit begins
-LIMITS = ((0.5, 1.5), (0.4, 0.95), (0.2, 2.0), (1.05, 2.0))  # of the fit of Curves
+SITE_START = 0.2  # m, of the site along the thigh, where a fit begins
+LIMITS = ((0.5, 1.5), (0.4, 0.95), (0.2, 2.0), (1.05, 2.0))  # of the fit of MuscleCurves
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ class Crossing:
         size, side = np.clip(np.abs(arm).max(), 2 * RADII[0], RADII[1] / 2), math.copysign(1.0, arm.mean())
         low, high = np.log(RADII)
         bounds = [low, low, -np.inf], [high, high, np.inf]
-        start = [math.log(size), math.log(FAR), side * math.pi / 2 - turn.mean()]  # a right angle in mid-turn
+        start = [math.log(size), math.log(SITE_START), side * math.pi / 2 - turn.mean()]  # a right angle in mid-turn
         near, far, phase = least_squares(lambda x: 1e3 * (of(x).arm(turn) - arm), start, bounds=bounds).x  # mm
         return of(np.array([min(near, far), max(near, far), phase]))
 
@@ -88,7 +88,7 @@ def native_curve(length: FloatArray, speed: FloatArray, width: float, plateau: f
     return np.asarray(by_length * np.where(speed <= 0, np.maximum(1 + speed, 0) ** 2, lengthening))
 
 
-class Curves(NamedTuple):
+class MuscleCurves(NamedTuple):
     """Of one muscle: force per isometric force at the optimal length, width, largest speed per its own, plateau."""
 
     force: float
@@ -97,7 +97,7 @@ class Curves(NamedTuple):
     plateau: float
 
     @classmethod
-    def fitted(cls, length: FloatArray, speed: FloatArray, fibre: dict[str, float]) -> tuple["Curves", float]:
+    def fitted(cls, length: FloatArray, speed: FloatArray, fibre: dict[str, float]) -> tuple["MuscleCurves", float]:
         """By least squares at these lengths and speeds, and the root mean square of what is left of the force."""
         from scipy.optimize import least_squares
 
@@ -142,7 +142,7 @@ def fitted(torque: MuscleTorque, turn: MuscleTurn, row: int) -> NativeMuscle:
         "pennation": float(muscles.pennation[row]),
         "max_speed": float(riders["max_speed"].item()),
     }
-    curves, force_error = Curves.fitted(length, pulled.speed[row, 0, 0], fibre)
+    curves, force_error = MuscleCurves.fitted(length, pulled.speed[row, 0, 0], fibre)
     return NativeMuscle(
         name=muscles.names[row],
         group=int(muscles.group[row]),

@@ -16,7 +16,7 @@ from fes_mj.common.errors import InputError
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.joints import JOINTS
 from fes_mj.linkage.legs import LEGS, Leg
-from fes_mj.muscles.anatomy import GROUPS, anatomy
+from fes_mj.muscles.anatomy import MUSCLE_GROUPS, anatomy
 from fes_mj.muscles.drive import Muscles
 from fes_mj.muscles.torque import MuscleTorque
 from fes_mj.simulation.appearance import Spec
@@ -90,7 +90,7 @@ class NativeMuscles:
             "native_muscles": [
                 {
                     "name": muscle.name,
-                    "group": GROUPS[muscle.group],
+                    "group": MUSCLE_GROUPS[muscle.group],
                     "length_error_mm": 1e3 * muscle.length_error,
                     "moment_arm_error_percent": 100 * muscle.arm_error,
                     "force_error_percent": 100 * muscle.force_error,

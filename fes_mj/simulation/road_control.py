@@ -11,7 +11,7 @@ from fes_mj.common.machine_code import inlined_machine_code
 from fes_mj.linkage.legs import TWO_LEGS
 from fes_mj.moments.drive import drive as driven_by_moments
 from fes_mj.moments.joint_moments import JointMoments
-from fes_mj.muscles.anatomy import GROUPS
+from fes_mj.muscles.anatomy import MUSCLE_GROUPS
 from fes_mj.muscles.step import LegMuscles, activated, joint_moments, stimulation, weights
 from fes_mj.riding.lookup import DRIVEN, between, place
 from fes_mj.riding.ride import Ride
@@ -42,7 +42,7 @@ class RoadControl(NamedTuple):
     falling: tuple[float, float, float]
 
 
-class Memory(NamedTuple):
+class RoadMemory(NamedTuple):
     """What changes from step to step. limit: range of the tendon from road to crank, rad, of which the first moves.
 
     activation, felt: of the groups and what they last felt of the stimulation, shape (legs, groups); NaN before the
@@ -91,14 +91,14 @@ def road_control(ride: Ride, model: mujoco.MjModel) -> RoadControl:
     )
 
 
-def memory_of(model: mujoco.MjModel) -> Memory:
+def memory_of(model: mujoco.MjModel) -> RoadMemory:
     """That of a ride that begins, with muscles at rest."""
-    shape = len(TWO_LEGS), len(GROUPS)
-    return Memory(model.tendon_range.reshape(-1), np.zeros(shape), np.full(shape, np.nan))
+    shape = len(TWO_LEGS), len(MUSCLE_GROUPS)
+    return RoadMemory(model.tendon_range.reshape(-1), np.zeros(shape), np.full(shape, np.nan))
 
 
 @inlined_machine_code
-def act(control: RoadControl, memory: Memory, qpos: Any, speeds: Any, ctrl: Any) -> None:
+def act(control: RoadControl, memory: RoadMemory, qpos: Any, speeds: Any, ctrl: Any) -> None:
     """Set the moments, and keep the freewheel's limit at the length reached.
 
     qpos, speeds: positions, and speeds at their own time. ctrl: of the motors, N m.
@@ -116,7 +116,7 @@ def act(control: RoadControl, memory: Memory, qpos: Any, speeds: Any, ctrl: Any)
 
 
 @inlined_machine_code
-def pull(control: RoadControl, memory: Memory, leg: int, qpos: Any, speeds: Any, ctrl: Any) -> None:
+def pull(control: RoadControl, memory: RoadMemory, leg: int, qpos: Any, speeds: Any, ctrl: Any) -> None:
     """Set the moments of a leg's muscles."""
     row, activation, before = 2 * leg, memory.activation[leg], memory.felt[leg]  # of DRIVEN: the knee, then the hip
     knee, knee_at, knee_rate = control.drives[row]

@@ -33,7 +33,7 @@ ROAD, DRIVETRAIN = "road", "drivetrain"  # the joint along the road, m; the tend
 # scheme loses less than 4e-4 of the muscles' work.
 TIMESTEP = 2e-4  # s
 # MuJoCo asks whether a tendon is shorter than its limit plus this. At zero, rounding would open the freewheel.
-TOUCH = 1e-9  # rad
+TENDON_MARGIN = 1e-9  # rad
 _FORWARD = (-1.0, 0.0, 0.0)
 _FAR = 1e6  # rad, an upper limit that is never reached: MuJoCo has no one-sided range
 
@@ -80,7 +80,7 @@ def _add_drivetrain(spec: Spec, ride: "ride.Ride") -> None:
         gear.name1, gear.data[0] = DRIVETRAIN, NO_MINUS - ride.start
         gear.solref, gear.solimp = LOOP_SOLREF, LOOP_SOLIMP
     else:
-        tendon.limited, tendon.margin = mujoco.mjtLimited.mjLIMITED_TRUE, TOUCH
+        tendon.limited, tendon.margin = mujoco.mjtLimited.mjLIMITED_TRUE, TENDON_MARGIN
         tendon.range = NO_MINUS - ride.start, _FAR
         tendon.solref_limit, tendon.solimp_limit = LOOP_SOLREF, LOOP_SOLIMP
 

@@ -14,7 +14,7 @@ from fes_mj.simulation.road import RoadRun
 from fes_mj.simulation.road_mjcf import TIMESTEP
 from fes_mj.simulation.time_step import FINE_TURN, SHARE, TRIAL, local_errors
 
-MOST_STEPS = 2_000_000  # with their records two thirds of a gigabyte and half a minute
+MOST_ROAD_STEPS = 2_000_000  # with their records two thirds of a gigabyte and half a minute
 # A run may ask for so much finer a step at once. The closed form knows no joint moments and no loose crank.
 FINER = 4.0
 # Of an error in the step: of second order, less what is not yet so small. A mistake, as moments of a step before, is of
@@ -27,7 +27,7 @@ def ride_timestep(trace: Trace) -> float:
 
     trace: the ride by the reduced equation of motion, which says how fast the crank is at each angle. Errors are of
     second order in the step: the loop gap, and the work that the scheme loses. Raises InputError where the ride would
-    take more than MOST_STEPS.
+    take more than MOST_ROAD_STEPS.
     """
     lost, gap = predicted_losses(trace, TIMESTEP)
     return _within_reason(trace, TIMESTEP / math.sqrt(max(1.0, _share("ride_energy", lost), _share("loop_gap", gap))))
@@ -65,10 +65,10 @@ def _share(check: str, error: float) -> float:
 def _within_reason(trace: Trace, step: float) -> float:
     """The step, s. Raises InputError where it takes too many of them."""
     needed = float(trace.time[-1]) / step
-    if not needed <= MOST_STEPS:
+    if not needed <= MOST_ROAD_STEPS:
         size = f"{needed:,.0f}" if math.isfinite(needed) else "endlessly many"
         raise InputError(
-            f"{trace.ride.name}: the ride needs {size} time steps, more than {MOST_STEPS:,}; give a shorter "
+            f"{trace.ride.name}: the ride needs {size} time steps, more than {MOST_ROAD_STEPS:,}; give a shorter "
             "--duration, or keep the links farther from their dead centres"
         )
     return step

@@ -141,10 +141,10 @@ MOST_STEPS = 1_000_000
 TRIAL = 2 * np.pi / 20_000  # rad a step: still of second order near a dead centre, not yet touched by rounding
 # Runge-Kutta's steps in a turn at the fastest that a loose crank can turn: results/energy.md.
 LOOSE_STEPS = 1920
-POSES = 3600  # of a turn, between which a loose crank is not faster
+LOOSE_POSES = 3600  # of a turn, between which a loose crank is not faster
 # Second differences of positions lose 1e-16 N^2. Where that shows in the prediction at N itself, it is several times as
 # large in the simulation.
-ROUNDING = 1.1
+STEP_ROUNDING = 1.1
 
 
 def steps_per_turn(design: Design, cadence: float, timestep: float | None = None, turns: float = 1) -> int:
@@ -190,7 +190,7 @@ def _needed_steps(design: Design, cadence: float) -> float:
         return math.inf
     steps = max(FEWEST_STEPS, math.ceil(2 * math.pi / TRIAL * math.sqrt(ratio)))
     final = predicted_errors(design, cadence, 2 * math.pi / steps).inverse_dynamics
-    return steps if final <= ROUNDING * allowed.inverse_dynamics else math.inf
+    return steps if final <= STEP_ROUNDING * allowed.inverse_dynamics else math.inf
 
 
 def loose_steps(design: Design, cadence: float, legs: int = 1, gravity: float = GRAVITY) -> int:
@@ -200,7 +200,7 @@ def loose_steps(design: Design, cadence: float, legs: int = 1, gravity: float = 
     At the fastest that it can turn so, a turn takes LOOSE_STEPS. Raises InputError as steps_per_turn.
     """
     steps = steps_per_turn(design, cadence)
-    angle, cell = np.linspace(0, 2 * np.pi, POSES, endpoint=False, retstep=True)
+    angle, cell = np.linspace(0, 2 * np.pi, LOOSE_POSES, endpoint=False, retstep=True)
     of_legs = [crank_inertia(kinematics.solve(design, angle - leg.lag)) for leg in LEGS[legs]]
     inertia = np.sum([leg.inertia for leg in of_legs], axis=0)
     rate = np.sum([leg.height_rate for leg in of_legs], axis=0)

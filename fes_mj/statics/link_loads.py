@@ -18,7 +18,7 @@ from fes_mj.statics.turn import QuasiStatic
 PEDAL_LOAD = 1500.0  # N; ISO 4210-8 and EN 14766 load pedals and drives with it
 
 
-class Section(NamedTuple):
+class LinkSection(NamedTuple):
     """Of a link beside the hole of a joint `start`, on the way to `end`: what the part beyond puts on it over the turn.
 
     case: riding or pushed. pull: N along the arm. bending: N m in the plane, across: out of it. length: m, to the arm's
@@ -57,7 +57,7 @@ class LinkLoads:
         """On a joint, N."""
         return max(float(np.abs(case[joint]).max()) for case in (self.riding, self.pushed))
 
-    def sections(self, plate: Plate, levers: Mapping[str, float]) -> Iterator[Section]:
+    def sections(self, plate: Plate, levers: Mapping[str, float]) -> Iterator[LinkSection]:
         """All sections of a link in both cases. Its arms go from its origin to its other holes.
 
         levers: how far outside the plate's middle each joint is pushed, m. The arms of a triangle count as bars of the
@@ -76,7 +76,7 @@ class LinkLoads:
                     bending = np.sum([(np.conj(reach) * force).imag for force, reach, _ in beyond], axis=0)
                     across = np.sum([lever * np.abs(force) for force, _, lever in beyond], axis=0)
                     length = float(abs(arm[-1].place - start.place))
-                    yield Section(name, start.joint, arm[-1].joint, pull, bending, across, length)
+                    yield LinkSection(name, start.joint, arm[-1].joint, pull, bending, across, length)
 
 
 def pedal_forces(motion: Motion, load: float) -> tuple[FloatArray, dict[str, ComplexArray]]:

@@ -12,7 +12,7 @@ import numpy as np
 from fes_mj.common.arrays import FloatArray
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.legs import all_legs
-from fes_mj.muscles.anatomy import GROUPS, anatomy
+from fes_mj.muscles.anatomy import MUSCLE_GROUPS, anatomy
 from fes_mj.muscles.prior import ramp
 from fes_mj.muscles.riders import Riders
 from fes_mj.muscles.rules import Stimulated, stimulated
@@ -99,7 +99,7 @@ class MuscleStatic(DrivenTurn):
             "negative_share": float(np.mean(both < 0)),
             **power_characteristics(all_legs(self.power, self.legs)),
             "windows_deg": self.windows_deg,
-            "duty": None if share is None else dict(zip(GROUPS, map(float, share), strict=True)),
+            "duty": None if share is None else dict(zip(MUSCLE_GROUPS, map(float, share), strict=True)),
             "ramp_s": ramp(),
             "extrapolated_share": 0.0,
             "notes": self.notes,
@@ -113,7 +113,7 @@ def _rider(rider: Riders, design: Design) -> dict[str, Any]:
     muscles, value = anatomy(), {name: float(column[0]) for name, column in rider.values.items()}
     columns = {
         "name": muscles.names,
-        "group": [GROUPS[number] for number in muscles.group],
+        "group": [MUSCLE_GROUPS[number] for number in muscles.group],
         "strength": rider.strength(muscles).ravel().tolist(),
         "max_isometric_force_N": muscles.force.tolist(),
         "optimal_fibre_length_m": muscles.optimal.tolist(),

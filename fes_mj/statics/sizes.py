@@ -20,7 +20,7 @@ from fes_mj.statics.link_loads import LinkLoads
 from fes_mj.statics.materials import Material, material, pin_stock, plate_stock
 from fes_mj.statics.turn import QuasiStatic
 
-SAFETY = 2.0  # against yielding and buckling
+YIELD_SAFETY = 2.0  # against yielding and buckling
 FORCE_POINTS = 720  # crank angles at which forces are looked at
 BOUGHT = "pedal"  # the joint whose pin and bearing come with what is screwed in
 PEDAL_HOLE = 0.0142875  # m, 9/16 inch: every pedal's thread
@@ -57,7 +57,7 @@ class Build:
         return {body: float(inertia.mass) for body, inertia in self.design.links}
 
 
-def build(turn: QuasiStatic, of: str = "aluminium", safety: float = SAFETY) -> Build:
+def build(turn: QuasiStatic, of: str = "aluminium", safety: float = YIELD_SAFETY) -> Build:
     """Size a design for the forces of its turn and of the pedal load: the lightest that plates in stock give.
 
     of: a name of materials(). safety: factor against yielding and buckling. Raises InputError for a material that is

@@ -16,7 +16,7 @@ from fes_mj.linkage.design import Design
 from fes_mj.linkage.design_file import load_design
 from fes_mj.linkage.variables import COMPONENTS
 from fes_mj.moments.files import load_moments
-from fes_mj.moments.joint_moments import GROUPS, JointMoments
+from fes_mj.moments.joint_moments import RIDER_GROUPS, JointMoments
 from fes_mj.moments.measurement import measured_files
 from fes_mj.muscles.drive import Muscles, load_muscles
 from fes_mj.muscles.rules import BEST
@@ -126,7 +126,7 @@ def load_study(path: Path, cadence: float | None = None, muscles: MuscleOptions 
     for section in (settings, grid, sample):
         section.only(_TABLES[section.name])
     grid.require(["design"], f"give a list, as in design = [{_EXAMPLES['design']}]")
-    grid.content.setdefault("moments", [GROUPS[0]])
+    grid.content.setdefault("moments", [RIDER_GROUPS[0]])
     if cadence is not None:
         if "cadence_rpm" in grid.content or "cadence_rpm" in sample.content:
             raise InputError(f"{path}: cadence_rpm is given here; leave out --cadence")
@@ -161,11 +161,11 @@ def _stimulated(settings: Section, muscles: MuscleOptions, names: list[str]) -> 
     widths_up_to(muscles.duty)
     if muscles.riders and len(names) > 1:
         raise InputError(f"{settings.path}: grid.moments has {len(names)} names; --muscles is one ensemble for one")
-    unknown = [name for name in names if name not in GROUPS]
+    unknown = [name for name in names if name not in RIDER_GROUPS]
     if unknown and not muscles.riders:
         raise InputError(
             f"{settings.path}: grid.moments has {unknown[0]}, of which no muscles are known; keep to "
-            f"{', '.join(GROUPS)}, or give an ensemble with --muscles"
+            f"{', '.join(RIDER_GROUPS)}, or give an ensemble with --muscles"
         )
     return {name: load_muscles(muscles.riders or name, muscles.rule, muscles.duty) for name in names}
 

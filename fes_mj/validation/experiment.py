@@ -19,14 +19,14 @@ from fes_mj.linkage.turning import turning
 from fes_mj.moments.measurement_file import read_tricycle
 from fes_mj.moments.reference_tricycle import ReferenceTricycle
 from fes_mj.moments.tables import load_table
-from fes_mj.muscles.anatomy import GROUPS, anatomy
+from fes_mj.muscles.anatomy import MUSCLE_GROUPS, anatomy
 from fes_mj.muscles.identification import Candidates, weighed
-from fes_mj.muscles.posterior import Posterior
+from fes_mj.muscles.posterior import WeighedRiders
 from fes_mj.muscles.prior import drawn, priors
 from fes_mj.muscles.pull import pull
 from fes_mj.muscles.recovery import gains
 from fes_mj.muscles.riders import Riders
-from fes_mj.muscles.timing import ANGLES, Windows, activation
+from fes_mj.muscles.timing import TURN_ANGLES, Windows, activation
 from fes_mj.validation.cranking import isometric
 
 MODEL_ERROR = 0.05  # of the largest number of its kind: what the model misses even of a rider whom it knows
@@ -85,17 +85,17 @@ class Experiment:
     def candidates(self, riders: Riders) -> Candidates:
         """What the experiment would give of riders, per strength of each group."""
         rows = len(self.values)
-        by_strength = np.zeros((len(riders), rows, len(GROUPS)))
+        by_strength = np.zeros((len(riders), rows, len(MUSCLE_GROUPS)))
         for start in range(0, len(riders), _BLOCK):
             block = slice(start, start + _BLOCK)
-            by_strength[block, :, GROUPS.index("quadriceps")] = self.seen(riders.taken(block))
+            by_strength[block, :, MUSCLE_GROUPS.index("quadriceps")] = self.seen(riders.taken(block))
         covariance = np.broadcast_to(self.covariance, (len(riders), rows, rows))
         return Candidates(riders, by_strength, np.zeros((len(riders), rows)), covariance)
 
     def seen(self, riders: Riders) -> FloatArray:
         """Powers and torques that these riders would give, shape (riders, rows)."""
         design, muscles = self.tricycle.design, anatomy().only("quadriceps")
-        motion, top = kinematics.solve(design, ANGLES), np.degrees(turning(design).top_dead_centre)
+        motion, top = kinematics.solve(design, TURN_ANGLES), np.degrees(turning(design).top_dead_centre)
         power = {rpm: pull(riders, motion, rpm * RPM, muscles).power[:1] for rpm in self.best_power}
         columns = []
         for rpm, on, off, *_ in self.cranked:
@@ -128,7 +128,7 @@ def _probabilities(riders: Riders) -> dict[str, dict[str, Any]]:
     }
 
 
-def identified(experiment: Experiment, candidates: int = 1000, seed: int = 28) -> Posterior:
+def identified(experiment: Experiment, candidates: int = 1000, seed: int = 28) -> WeighedRiders:
     """Riders weighed by the experiment; candidates: of each stage (muscles.identification.weighed)."""
     random, name = np.random.default_rng(seed), str(next(iter(experiment.files), "experiment"))
     return weighed(experiment.candidates, experiment.values, random, candidates, name)

@@ -11,24 +11,24 @@ from fes_mj.common.units import RPM
 from fes_mj.linkage import kinematics
 from fes_mj.linkage.design import Design, Linkage
 from fes_mj.linkage.joints import PerJoint
-from fes_mj.muscles.anatomy import GROUPS, anatomy
+from fes_mj.muscles.anatomy import MUSCLE_GROUPS, anatomy
 from fes_mj.muscles.passive import passive_moments
 from fes_mj.muscles.power import best_turn, muscle_turn
 from fes_mj.muscles.riders import Riders, load_riders
 from fes_mj.muscles.rules import trial_windows
-from fes_mj.muscles.timing import ANGLES, Windows
-from fes_mj.validation.cranking import TRICYCLE, Setup
+from fes_mj.muscles.timing import TURN_ANGLES, Windows
+from fes_mj.validation.cranking import TRICYCLE, CrankingSetup
 
 _SLIDER = 20.0  # m: a rocker so long leads as a straight slide does, within 2 mm
 _COUPLER = 5.0  # of the stepper per crank: long enough that its path is an ellipse
 
 
-def _joint_power(riders: Riders, setup: Setup) -> PerJoint[tuple[FloatArray, FloatArray]]:
+def _joint_power(riders: Riders, setup: CrankingSetup) -> PerJoint[tuple[FloatArray, FloatArray]]:
     """Moment of muscles and passive tissue, N m, and power, W, (members, angles), in a rider group's windows."""
     leg, cadence = setup["leg_m"], setup["cadence_rpm"][0] * RPM
     theirs = load_riders(setup["windows_of"]).taken(slice(len(riders)))
     design = TRICYCLE.with_rider(thigh=leg, shank=leg)
-    motion = kinematics.solve(design, ANGLES)
+    motion = kinematics.solve(design, TURN_ANGLES)
     turn = muscle_turn(riders, design, cadence, trial_windows(theirs, design))
     passive = passive_moments(riders.flexion(motion))
 
@@ -39,7 +39,7 @@ def _joint_power(riders: Riders, setup: Setup) -> PerJoint[tuple[FloatArray, Flo
     return PerJoint.of(of_joint)
 
 
-def _shares(riders: Riders, setup: Setup, joint: str, sign: int) -> FloatArray:
+def _shares(riders: Riders, setup: CrankingSetup, joint: str, sign: int) -> FloatArray:
     """Net work while a joint's moment has this sign per the leg's, %."""
     both = _joint_power(riders, setup)
     moment, power = both[joint]
@@ -47,22 +47,22 @@ def _shares(riders: Riders, setup: Setup, joint: str, sign: int) -> FloatArray:
     return np.asarray(100 * np.where(sign * moment > 0, power, 0).mean(axis=1) / net)
 
 
-def knee_extensors(riders: Riders, setup: Setup) -> FloatArray:
+def knee_extensors(riders: Riders, setup: CrankingSetup) -> FloatArray:
     """Their share of the leg's work, %."""
     return _shares(riders, setup, "knee", 1)
 
 
-def knee_flexors(riders: Riders, setup: Setup) -> FloatArray:
+def knee_flexors(riders: Riders, setup: CrankingSetup) -> FloatArray:
     """Their share of the leg's work, %."""
     return _shares(riders, setup, "knee", -1)
 
 
-def hip_extensors(riders: Riders, setup: Setup) -> FloatArray:
+def hip_extensors(riders: Riders, setup: CrankingSetup) -> FloatArray:
     """Their share of the leg's work, %."""
     return _shares(riders, setup, "hip", 1)
 
 
-def eccentric(riders: Riders, setup: Setup) -> FloatArray:
+def eccentric(riders: Riders, setup: CrankingSetup) -> FloatArray:
     """Work of both joints while their moments brake, per the leg's work, %."""
     power = np.stack([power for _, power in _joint_power(riders, setup)])
     return np.asarray(100 * np.minimum(power, 0).mean(axis=2).sum(axis=0) / power.mean(axis=2).sum(axis=0))
@@ -99,18 +99,18 @@ def stepper(crank: float, flatness: float, knee_deg: float) -> Design:
         return Design("elliptical stepper", linkage, rider)
 
     def too_far(distance: float) -> float:
-        return float(np.abs(kinematics.positions(at(distance), ANGLES)["pedal"]).max() - reach)
+        return float(np.abs(kinematics.positions(at(distance), TURN_ANGLES)["pedal"]).max() - reach)
 
     beyond_pedal = (1 - flatness) * coupler
     found: float = brentq(too_far, beyond_pedal, beyond_pedal + 2 * reach)
     return at(found)
 
 
-def stepping_per_cycling(riders: Riders, setup: Setup) -> FloatArray:
+def stepping_per_cycling(riders: Riders, setup: CrankingSetup) -> FloatArray:
     """Power on elliptical steppers of the sizes that may have been meant, per cycling; (members of all sizes,)."""
 
     def power(design: Design) -> FloatArray:
-        motion = kinematics.solve(design, ANGLES)
+        motion = kinematics.solve(design, TURN_ANGLES)
         anatomy().require_range(design.name, riders.flexion(motion))
         rates = [rpm * RPM for rpm in setup["cadence_rpm"]]
         return np.asarray(np.mean([best_turn(riders, design, rate)[0].power_mean[:, 0] for rate in rates], axis=0))
@@ -120,12 +120,12 @@ def stepping_per_cycling(riders: Riders, setup: Setup) -> FloatArray:
     return stepping / np.tile(power(TRICYCLE), len(sizes))
 
 
-def effort_saved(riders: Riders, setup: Setup) -> FloatArray:
+def effort_saved(riders: Riders, setup: CrankingSetup) -> FloatArray:
     """Change of stimulated force and time per work by the best timing instead of the measurement's, %."""
     cadence = setup["cadence_rpm"][0] * RPM
     _, best = best_turn(riders, TRICYCLE, cadence)
     force = np.stack([anatomy().force[rows].sum() for rows in anatomy().of_group])
-    strength = np.stack([riders.values[f"{group}_strength"] for group in GROUPS])
+    strength = np.stack([riders.values[f"{group}_strength"] for group in MUSCLE_GROUPS])
 
     def per_work(windows: Windows) -> FloatArray:
         turn = muscle_turn(riders, TRICYCLE, cadence, windows)

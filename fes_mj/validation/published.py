@@ -13,9 +13,9 @@ from fes_mj.common.arrays import FloatArray
 from fes_mj.common.reading import DATA, read_toml
 from fes_mj.muscles.riders import Riders, load_riders
 from fes_mj.validation import by_angle, cranking, machines, roads
-from fes_mj.validation.cranking import Setup
+from fes_mj.validation.cranking import CrankingSetup
 
-FILE = DATA / "published.toml"
+PUBLISHED_FILE = DATA / "published.toml"
 AGREES, CONTRADICTS, CANNOT_TELL = VERDICTS = ("agrees", "contradicts", "cannot tell")
 RULE = (
     "The prediction's interval holds 90 % of the riders who may have been measured. A direction agrees if all of it "
@@ -27,7 +27,7 @@ _ENDS = (0.05, 0.5, 0.95)
 _WIDEST = 3.0  # prediction's interval per the measurement's
 _MODULES: tuple[ModuleType, ...] = (by_angle, cranking, machines, roads)
 Interval: TypeAlias = tuple[float, float]
-Prediction: TypeAlias = Callable[[Riders, Setup], FloatArray]
+Prediction: TypeAlias = Callable[[Riders, CrankingSetup], FloatArray]
 
 
 def verdict(predicted: tuple[float, float, float], measured: Interval) -> str:
@@ -43,7 +43,7 @@ def verdict(predicted: tuple[float, float, float], measured: Interval) -> str:
 
 
 @dataclass(frozen=True)
-class Row:
+class PublishedRow:
     """One row of the file, whose keys it describes."""
 
     content: dict[str, Any]
@@ -93,9 +93,9 @@ def prediction(name: str) -> Prediction:
 
 
 @cache
-def rows() -> tuple[Row, ...]:
+def rows() -> tuple[PublishedRow, ...]:
     """All of the file, measurements first."""
-    found = [Row(content) for content in read_toml(FILE, "published measurements").content["row"]]
+    found = [PublishedRow(content) for content in read_toml(PUBLISHED_FILE, "published measurements").content["row"]]
     return tuple(sorted(found, key=lambda row: row.content["kind"] != "measurement"))
 
 

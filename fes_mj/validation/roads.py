@@ -14,13 +14,13 @@ from fes_mj.muscles.riders import Riders
 from fes_mj.riding.ride import Ride
 from fes_mj.riding.stimulated import StimulatedRider
 from fes_mj.riding.trace import ride
-from fes_mj.validation.cranking import TRICYCLE, Setup
+from fes_mj.validation.cranking import TRICYCLE, CrankingSetup
 
 _SPEEDS = np.linspace(1.0, 31.0, 13)  # km/h, between which the surplus of power is interpolated
 _RIDES = 10  # of a rider group, with either transmission
 
 
-def speed(riders: Riders, setup: Setup) -> FloatArray:
+def speed(riders: Riders, setup: CrankingSetup) -> FloatArray:
     """At which the muscles' power, after `minutes` of fatigue, is what a level road takes, km/h; 0 where it never is.
 
     A steady crank: what a ride loses by not being one is left out.
@@ -49,7 +49,7 @@ def _farther(drives: Sequence[JointMoments | StimulatedRider]) -> FloatArray:
     return 100 * (speed("fixed") / speed("freewheel") - 1)
 
 
-def farther_in_fixed_gear(riders: Riders, setup: Setup) -> FloatArray:
+def farther_in_fixed_gear(riders: Riders, setup: CrankingSetup) -> FloatArray:
     """By how much faster the standard tricycle settles with a fixed gear than with a freewheel, a few riders, %.
 
     Distance till exhaustion grows as speed does if a rider tires by the time of stimulation.
@@ -60,6 +60,6 @@ def farther_in_fixed_gear(riders: Riders, setup: Setup) -> FloatArray:
     return _farther([StimulatedRider(riders.taken([row]), windows, cadence) for row in few])
 
 
-def farther_by_moments(riders: Riders, setup: Setup) -> FloatArray:
+def farther_by_moments(riders: Riders, setup: CrankingSetup) -> FloatArray:
     """The same by recovered moments that may be."""
     return _farther(sampled_moments(riders.name, _RIDES))

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from fes_mj.crosscheck.turn_case import Case
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.verification import energy
-from fes_mj.verification.references import Curves, differences, exact_curves
+from fes_mj.verification.references import MomentCurves, differences, exact_curves
 from fes_mj.verification.refinement import refine
 
 if TYPE_CHECKING:
@@ -75,7 +75,7 @@ class VerificationCase(Case):
     refinement = cached_property(refine)  # the run at other time steps and loop stiffnesses
 
     @cached_property
-    def curves(self) -> dict[str, Curves]:
+    def curves(self) -> dict[str, MomentCurves]:
         """Crank moment by the exact methods beside what was measured, by family, N m."""
         exact = exact_curves(self, self.audit.crank_angle)
         massless = exact_curves(self, self.massless.crank_angle)["massless"]

@@ -15,7 +15,15 @@ from fes_mj.linkage.design import Design
 from fes_mj.linkage.variables import ALL
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.verification.case import VerificationCase
-from fes_mj.verification.suite import FULL, QUICK, CheckGroup, refinement_checks, ride_checks, two_leg_checks, verify
+from fes_mj.verification.suite import (
+    FULL_CHECKS,
+    QUICK_CHECKS,
+    CheckGroup,
+    refinement_checks,
+    ride_checks,
+    two_leg_checks,
+    verify,
+)
 
 Steps: TypeAlias = dict[str, Any]  # step of a pipeline or of a RideCase -> what takes its place
 
@@ -53,7 +61,7 @@ class Fault(NamedTuple):
         if self.legs > 1:
             return (two_leg_checks,)
         refined = any(definitions()[guard].kind == "solution verification" for guard in self.guards)
-        return (*QUICK, refinement_checks) if refined else QUICK
+        return (*QUICK_CHECKS, refinement_checks) if refined else QUICK_CHECKS
 
     def put_into(self, case: VerificationCase) -> VerificationCase:
         """The case with the mistake in it; nothing measured of the original is taken over."""
@@ -124,6 +132,6 @@ def inject(fault: Fault, case: VerificationCase, baseline: Mapping[str, bool]) -
 def passing(case: VerificationCase) -> dict[str, bool]:
     """Check name -> whether it passes on the case as it is, whatever it is measured on."""
     passes: dict[str, bool] = {}
-    for check in verify(case, FULL):
+    for check in verify(case, FULL_CHECKS):
         passes[check.name] = check.ok and passes.get(check.name, True)
     return passes

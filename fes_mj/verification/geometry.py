@@ -21,15 +21,15 @@ from fes_mj.linkage.variables import SHORTEST
 from fes_mj.verification.case import VerificationCase
 
 # The catalogue is resolved to rounding by 512 points; linkages closer to a dead centre turn faster there.
-SAMPLES = 2048
-POSES = uniform_turn(72)
-DEGREES = ("gamma", "seat_angle")  # keys of a design file that are angles
+GEOMETRY_POINTS = 2048
+FILE_ANGLES = uniform_turn(72)
+ANGLE_KEYS = ("gamma", "seat_angle")  # keys of a design file that are angles
 WHEEL, SPEED = 0.66, 5.71 / 3.6  # m, m/s: of Eq. 16, not the reader's
 
 
 def geometry_checks(case: Case) -> Iterator[Check]:
     """Closure, branch and rates of one case."""
-    motion = case.steps.motion(uniform_turn(SAMPLES))
+    motion = case.steps.motion(uniform_turn(GEOMETRY_POINTS))
     first, second = rate_errors(motion)
     yield case.check("loop_closure", closure_error(motion))
     yield case.check("assembly_mode", wrong_branch(motion))
@@ -63,7 +63,7 @@ def wrong_branch(motion: Motion) -> float:
 def rate_errors(motion: Motion) -> tuple[float, float]:
     """Kinematic coefficients against Fourier derivatives of the positions and angles, relative to the largest.
 
-    First and second coefficients; motion over SAMPLES uniform crank angles from 0.
+    First and second coefficients; motion over GEOMETRY_POINTS uniform crank angles from 0.
     """
     pairs: list[tuple[Any, Any, Any]] = [
         (jet.value, jet.first, jet.second) for jet in motion.points.values() if np.size(jet.value) > 1
@@ -90,7 +90,7 @@ def _relative_error(value: Any, reference: Any) -> float:
 def file_checks(case: VerificationCase) -> Iterator[Check]:
     """Every dimension that the case's design file gives; nothing for a design that is in no file."""
     if case.file:
-        yield case.check("design_file", file_error(case.file, case.steps.motion(POSES)))
+        yield case.check("design_file", file_error(case.file, case.steps.motion(FILE_ANGLES)))
 
 
 def file_error(path: Path, motion: Motion) -> float:
@@ -109,7 +109,7 @@ def file_error(path: Path, motion: Motion) -> float:
 
 
 def _difference(key: str, given: Any, measured: Any) -> Any:
-    if key in DEGREES:
+    if key in ANGLE_KEYS:
         return np.angle(np.exp(1j * (measured - given * math.pi / 180)))
     return measured - (complex(*given) if isinstance(given, list) else given)
 

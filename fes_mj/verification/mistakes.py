@@ -26,7 +26,7 @@ from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.moments.torque_map import GRID, TorqueMap
 from fes_mj.riding.trace import Trace, ride as ride_by_equation
-from fes_mj.simulation.bench import PLAIN, BenchOptions
+from fes_mj.simulation.bench import PLAIN_BENCH, BenchOptions
 from fes_mj.simulation.mjcf import SERVO, SERVO_GAIN
 from fes_mj.simulation.road import RoadRun
 from fes_mj.simulation.road_control import RoadControl
@@ -145,7 +145,7 @@ def in_keyframe(field: str, joint: str, change: Callable[[float], float]) -> Ste
     return {"edit_model": edit}
 
 
-def coarser(steps: Pipeline, options: BenchOptions = PLAIN, *, timestep: float | None = None, **own: Any) -> Any:
+def coarser(steps: Pipeline, options: BenchOptions = PLAIN_BENCH, *, timestep: float | None = None, **own: Any) -> Any:
     count = steps_per_turn(steps.design, steps.cadence, steps.timestep if timestep is None else timestep)
     return Pipeline.run(steps, options, timestep=16 * 2 * math.pi / steps.cadence / count, **own)
 
@@ -186,7 +186,7 @@ _SEAT_OF_TRT = PAPER_TRICYCLE.design.linkage.seat_angle
 _TILT = math.radians(0.1)
 
 # Step of the pipeline -> what takes its place, by the name of the fault in data/faults.toml.
-STEPS: dict[str, Steps] = {
+MISTAKEN_STEPS: dict[str, Steps] = {
     "knee_sign": with_equilibrium(couples=lambda moment: joint_couples(moment) | {"shank": moment.knee}),
     "thigh_lever": with_equilibrium(arm=without_length),
     "loads_at_joints": {"equilibrium": with_loads_at_joints},
@@ -222,7 +222,7 @@ STEPS: dict[str, Steps] = {
     "late_torque": in_result(Pipeline.run, lambda run: replace(run, crank_moment=np.roll(run.crank_moment, 1))),
     "turn_and_a_half": {"run": lambda *args, **own: replace(Pipeline.run(*args, **own | {"turns": 1.5}), turns=1)},
     "no_pre_roll": {
-        "run": lambda steps, options=PLAIN, **own: Pipeline.run(steps, replace(options, pre_roll=1), **own)
+        "run": lambda steps, options=PLAIN_BENCH, **own: Pipeline.run(steps, replace(options, pre_roll=1), **own)
     },
     "coarse_step": {"run": coarser},
     "no_rotary_inertia": in_result(
@@ -268,7 +268,7 @@ def faults() -> tuple[Fault, ...]:
         Fault(
             name,
             **row,
-            steps=STEPS.get(name) or MUSCLE_STEPS.get(name, {}),
+            steps=MISTAKEN_STEPS.get(name) or MUSCLE_STEPS.get(name, {}),
             ride_steps=RIDE_STEPS.get(name, {}),
             edit=EDITS.get(name),
         )

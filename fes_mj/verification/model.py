@@ -12,7 +12,7 @@ from fes_mj.crosscheck.turn_case import Case
 from fes_mj.linkage import kinematics
 from fes_mj.linkage.joints import JOINTS
 from fes_mj.moments.torque_map import GRID, TABLE_SIZE, TorqueMap
-from fes_mj.muscles.anatomy import GROUPS
+from fes_mj.muscles.anatomy import MUSCLE_GROUPS
 from fes_mj.muscles.pull import pull
 from fes_mj.muscles.torque import MuscleTorque
 from fes_mj.simulation.export import mjcf_text
@@ -50,7 +50,7 @@ def muscle_checks(case: Case) -> Iterator[Check]:
     expected = pull(torque.riders, motion, cadence).moment
     rates = motion.joint_rate.map(lambda rate: cadence * rate)
     states, spread = np.column_stack([*motion.joint_angle, *rates]).tolist(), 0.0
-    for group, active in enumerate(np.eye(len(GROUPS)).tolist()):
+    for group, active in enumerate(np.eye(len(MUSCLE_GROUPS)).tolist()):
         knee, hip = np.transpose([torque.moments_of(torque.leg, active, *state) for state in states])
         apart = (knee - expected.knee[group, 0, 0], hip - expected.hip[group, 0, 0])
         spread = max(spread, float(np.abs(apart).max()))

@@ -8,10 +8,10 @@ from typing import Any, cast
 
 from fes_mj.crosscheck.pipeline import Pipeline
 from fes_mj.linkage.turning import turning
-from fes_mj.muscles.anatomy import GROUPS, anatomy
+from fes_mj.muscles.anatomy import MUSCLE_GROUPS, anatomy
 from fes_mj.muscles.drive import Muscles
 from fes_mj.muscles.instant import LegMuscles, Stimulus, joint_moments
-from fes_mj.muscles.stepping import Stimulator
+from fes_mj.muscles.stepping import StimulusLaw
 from fes_mj.muscles.torque import MuscleTorque
 from fes_mj.verification.faults import Steps
 
@@ -79,7 +79,7 @@ def unscaled(torque: MuscleTorque) -> LegMuscles:
     return right._replace(force=right.force / muscles.length_scale(torque.design.rider).ravel()).in_lists
 
 
-def unshifted(torque: MuscleTorque, _: float) -> Stimulator:
+def unshifted(torque: MuscleTorque, _: float) -> StimulusLaw:
     return MuscleTorque.stimulator(torque, 0.0)
 
 
@@ -89,7 +89,7 @@ def from_top(torque: MuscleTorque, right: Stimulus) -> dict[str, Any]:
 
 
 def exchanged(leg: LegMuscles) -> dict[str, Any]:
-    other = [GROUPS.index(group) for group in ("hamstrings", "quadriceps", "gluteus")]
+    other = [MUSCLE_GROUPS.index(group) for group in ("hamstrings", "quadriceps", "gluteus")]
     return {"group": [other[group] for group in leg.group]}
 
 
@@ -106,7 +106,7 @@ MUSCLE_STEPS: dict[str, Steps] = {
     "ramp_forgotten": in_stimulus(lambda *_: {"ramp": 1e-9}),
     "pennation_forgotten": in_leg(lambda leg: {"thickness": 0 * leg.thickness}),
     "hip_offset_reversed": in_rider(hip_offset_deg=-1.0),
-    "slack_shift_reversed": in_rider(**{f"{group}_fibre_shift": -1.0 for group in GROUPS}),
+    "slack_shift_reversed": in_rider(**{f"{group}_fibre_shift": -1.0 for group in MUSCLE_GROUPS}),
     "length_scale_forgotten": in_muscles(leg=property(unscaled)),
     "windows_from_top": in_stimulus(from_top),
     "left_muscles_unshifted": in_muscles(stimulator=unshifted),

@@ -31,7 +31,7 @@ BAR_LENGTH, BAR_MASS, PUSH = 1.0, 1.0, 1.0  # m, kg, m/s of the first bar's top
 
 
 @dataclass(frozen=True)
-class Settings:
+class IntegratorSettings:
     """How a chain is integrated: MuJoCo's integrator, time step (s), loop time constant (s) and impedance."""
 
     name: str
@@ -41,15 +41,17 @@ class Settings:
     solimp: tuple[float, ...]
 
 
-RECOMMENDED = Settings("RK4, stiff loops", mujoco.mjtIntegrator.mjINT_RK4, 0.5e-3, 1e-3, LOOP_SOLIMP)
-DEFAULTS = Settings("MuJoCo's defaults", mujoco.mjtIntegrator.mjINT_EULER, 2e-3, 0.02, (0.9, 0.95, 0.001, 0.5, 2.0))
+RECOMMENDED = IntegratorSettings("RK4, stiff loops", mujoco.mjtIntegrator.mjINT_RK4, 0.5e-3, 1e-3, LOOP_SOLIMP)
+DEFAULTS = IntegratorSettings(
+    "MuJoCo's defaults", mujoco.mjtIntegrator.mjINT_EULER, 2e-3, 0.02, (0.9, 0.95, 0.001, 0.5, 2.0)
+)
 
 
 @dataclass(frozen=True)
 class Chain:
     """A run of A02; arrays have shape (steps,)."""
 
-    settings: Settings
+    settings: IntegratorSettings
     time: FloatArray  # s
     energy: FloatArray  # J, relative to the start
     gap: FloatArray  # m, of the window that is open widest
@@ -72,7 +74,7 @@ def compare_chains() -> list[Chain]:
     return [run_chain(settings) for settings in (RECOMMENDED, DEFAULTS)]
 
 
-def chain_spec(settings: Settings, windows: int = WINDOWS) -> Spec:
+def chain_spec(settings: IntegratorSettings, windows: int = WINDOWS) -> Spec:
     """The chain upright: bar i stands on the ground at x = i, coupler i leads from its top to the next bar's."""
     spec = mujoco.MjSpec()
     set_options(spec, settings.timestep, GRAVITY)
@@ -93,7 +95,7 @@ def chain_spec(settings: Settings, windows: int = WINDOWS) -> Spec:
     return spec
 
 
-def run_chain(settings: Settings, windows: int = WINDOWS, duration: float = CHAIN_TIME) -> Chain:
+def run_chain(settings: IntegratorSettings, windows: int = WINDOWS, duration: float = CHAIN_TIME) -> Chain:
     """Push the chain over and let it turn for `duration` s."""
     model = chain_spec(settings, windows).compile()
     data = mujoco.MjData(model)

@@ -18,12 +18,12 @@ from fes_mj.linkage.kinematics import Motion, uniform_turn
 from fes_mj.simulation.mjcf import REAL, Physics, joint_motion
 from fes_mj.statics.equilibrium import virtual_work
 
-Curves: TypeAlias = dict[str, FloatArray]  # method -> crank moment, N m, shape (angles,)
+MomentCurves: TypeAlias = dict[str, FloatArray]  # method -> crank moment, N m, shape (angles,)
 EVERY_DEGREE = uniform_turn(360)
 NEARLY_MASSLESS = Physics(mass_scale=1e-3, gravity=0.0)
 
 
-def exact_curves(case: Case, crank_angle: FloatArray | None = None) -> dict[str, Curves]:
+def exact_curves(case: Case, crank_angle: FloatArray | None = None) -> dict[str, MomentCurves]:
     """Crank moment by every method that needs no simulation; families "massive" and "massless".
 
     crank_angle: rad, shape (angles,), by default every degree.
@@ -68,7 +68,7 @@ def mujoco_inverse(
     return np.asarray(np.sum(rate * (motors - needed), axis=1))
 
 
-def differences(curves: Curves) -> dict[tuple[str, str], float]:
+def differences(curves: MomentCurves) -> dict[tuple[str, str], float]:
     """Largest difference of every pair of methods over the turn, N m."""
     return {(one, other): float(np.abs(curves[one] - curves[other]).max()) for one, other in combinations(curves, 2)}
 

@@ -19,7 +19,7 @@ STEP_FACTORS = (1, 2, 4)  # steps a turn, times the recommended number
 LOOP_TIMES = (8e-3, 4e-3, 2e-3)  # s, soft enough for the softness to dominate the loop gap
 SOFTNESS_STEP_FACTOR = 2
 EXACT_POINTS = 36_000  # of the quasi-static turn: its own quadrature error is below 1e-7
-SAFETY = 1.25  # Roache's factor for three grids
+GRID_SAFETY = 1.25  # Roache's factor for three grids
 
 
 @dataclass(frozen=True)
@@ -77,7 +77,7 @@ class Refinement:
     @property
     def uncertainty(self) -> float:
         """Discretisation error of the mean power at the recommended step, with Roache's safety factor, relative."""
-        return SAFETY * abs(self.steps[0].work_error - self.extrapolated)
+        return GRID_SAFETY * abs(self.steps[0].work_error - self.extrapolated)
 
     def as_json(self) -> dict[str, Any]:
         """Levels, orders and what follows from them."""

@@ -80,7 +80,7 @@ def ride_checks(case: VerificationCase) -> Iterator[Check]:
 
 
 CheckGroup: TypeAlias = Callable[[VerificationCase], Iterator[Check]]
-QUICK: tuple[CheckGroup, ...] = (
+QUICK_CHECKS: tuple[CheckGroup, ...] = (
     *(geometry_checks, file_checks, map_checks, muscle_checks, exact_checks, model_checks, turn_checks),
     printed_checks,
 )
@@ -88,13 +88,13 @@ QUICK: tuple[CheckGroup, ...] = (
 
 def quick_groups(legs: int) -> tuple[CheckGroup, ...]:
     """What decides about a design whenever it is simulated: by `simulate` and by `validate --quick`."""
-    return (*QUICK, two_leg_checks) if legs == 2 else QUICK
+    return (*QUICK_CHECKS, two_leg_checks) if legs == 2 else QUICK_CHECKS
 
 
-FULL = (*QUICK, two_leg_checks, refinement_checks, ride_checks)
+FULL_CHECKS = (*QUICK_CHECKS, two_leg_checks, refinement_checks, ride_checks)
 
 
-def verify(case: VerificationCase, groups: tuple[CheckGroup, ...] = QUICK) -> Iterator[Check]:
+def verify(case: VerificationCase, groups: tuple[CheckGroup, ...] = QUICK_CHECKS) -> Iterator[Check]:
     """Run the checks of a case, group by group. Raises AssemblyError if its linkage does not close."""
     for group in groups:
         yield from _stable(group(case), case.name)

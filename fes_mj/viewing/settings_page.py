@@ -13,11 +13,11 @@ from fes_mj.common.text import printable
 from fes_mj.common.units import RPM
 from fes_mj.linkage.legs import TWO_LEGS
 from fes_mj.linkage.turning import CRANK_ZERO, turning
-from fes_mj.muscles.anatomy import GROUPS
+from fes_mj.muscles.anatomy import MUSCLE_GROUPS
 from fes_mj.muscles.prior import ramp
 from fes_mj.muscles.setting import MISTIMED, Setting
 from fes_mj.muscles.settings import Settings
-from fes_mj.muscles.timing import ANGLES
+from fes_mj.muscles.timing import TURN_ANGLES
 from fes_mj.viewing.rings import clockwise, draw_window, finish_rings
 
 A4 = 11.69, 8.27  # inches, landscape
@@ -90,7 +90,7 @@ def _notes(settings: Settings) -> str:
 def _ring(axes: Any, setting: Setting) -> None:
     """Windows of the right leg, a ring a group; the left leg's, half a turn later, pale."""
     windows = setting.windows
-    for number, group in enumerate(GROUPS):
+    for number, group in enumerate(MUSCLE_GROUPS):
         on, width = (np.radians(values[number, 0, 0]) for values in (windows.on, windows.width))
         for leg, shade in zip(TWO_LEGS[: setting.legs], (1.0, 0.22), strict=False):
             label = group if shade == 1 else None
@@ -135,7 +135,7 @@ def _table(axes: Axes, setting: Setting) -> None:
 
 def _turn(axes: Axes, setting: Setting) -> None:
     """Power of the legs over the turn, with what 90 % of the riders give."""
-    degrees, together = np.append(np.degrees(ANGLES), 360), setting.together
+    degrees, together = np.append(np.degrees(TURN_ANGLES), 360), setting.together
     closed = np.concatenate([together, together[:, :1]], axis=1)
     low, high = np.quantile(closed, (0.05, 0.95), axis=0)
     axes.fill_between(degrees, low, high, color=SERIES[0], alpha=0.18, lw=0)

@@ -14,7 +14,7 @@ from typing import Any
 from fes_mj.common.markdown import Table
 from fes_mj.common.writing import json_text, write_text
 from fes_mj.linkage.design_file import SIX_BARS
-from fes_mj.moments.joint_moments import GROUPS as RIDER_GROUPS
+from fes_mj.moments.joint_moments import RIDER_GROUPS
 from fes_mj.muscles.anatomy import anatomy
 from fes_mj.muscles.fatigue import FALL, FLOOR, RECOVERY
 from fes_mj.muscles.trial import ENDS

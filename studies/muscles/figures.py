@@ -12,13 +12,13 @@ from matplotlib.figure import Figure
 
 from fes_mj.common.style import BY_DESIGN, FAINT, INK, SERIES
 from fes_mj.linkage.design_file import DESIGNS, SIX_BARS, load_design
-from fes_mj.muscles.anatomy import GROUPS
+from fes_mj.muscles.anatomy import MUSCLE_GROUPS
 from fes_mj.muscles.by_angle import Gains
 from fes_mj.muscles.fatigue import recoveries
 from fes_mj.muscles.power import best_turn
 from fes_mj.muscles.riders import load_riders
 from fes_mj.muscles.setting import Setting
-from fes_mj.muscles.timing import ANGLES
+from fes_mj.muscles.timing import TURN_ANGLES
 from fes_mj.viewing.charts import write_figure
 from studies.muscles.gains import MEASURED_W, WIDTHS, known_gains, paper_gains
 from studies.muscles.use import MINUTES, tired
@@ -102,13 +102,13 @@ def windows() -> Figure:
     for place, (name, colour) in enumerate(BY_DESIGN.items()):
         design = load_design(name)
         setting = Setting.best(design, riders, design.linkage.cadence)
-        for number, group in enumerate(GROUPS):
+        for number, group in enumerate(MUSCLE_GROUPS):
             on, width = setting.windows.on[number, 0, 0], setting.windows.width[number, 0, 0]
             pieces = [(on, min(width, 360 - on)), (0, max(0, on + width - 360))]
             label = group if place == 0 else None
             bars.broken_barh(pieces, (place - 0.36 + 0.25 * number, 0.22), color=SERIES[number], lw=0, label=label)
         if name in ("trt", "r1", "d1"):
-            power.plot(np.degrees(ANGLES), setting.together.mean(axis=0), color=colour, label=name.upper())
+            power.plot(np.degrees(TURN_ANGLES), setting.together.mean(axis=0), color=colour, label=name.upper())
     bars.set_yticks(range(len(DESIGNS)), [name.upper() for name in DESIGNS])
     bars.invert_yaxis()
     for axes in (bars, power):

@@ -11,15 +11,15 @@ from fes_mj.common.arrays import FloatArray
 from fes_mj.common.units import RPM, turns_per_second
 from fes_mj.linkage import kinematics
 from fes_mj.linkage.design_file import DESIGNS, SIX_BARS, load_design
-from fes_mj.moments.joint_moments import GROUPS as RIDER_GROUPS
-from fes_mj.muscles.anatomy import GROUPS, Anatomy
+from fes_mj.moments.joint_moments import RIDER_GROUPS
+from fes_mj.muscles.anatomy import MUSCLE_GROUPS, Anatomy
 from fes_mj.muscles.by_angle import Gains, null_test
 from fes_mj.muscles.prior import drawn
 from fes_mj.muscles.pull import pull
 from fes_mj.muscles.riders import Riders, load_riders
 from fes_mj.muscles.rules import RULES, stimulated
 from fes_mj.muscles.setting import Setting
-from fes_mj.muscles.timing import ANGLES, DUTY, activation, best_windows
+from fes_mj.muscles.timing import DUTY, TURN_ANGLES, activation, best_windows
 from fes_mj.muscles.trial import ENDS
 from fes_mj.paper.evidence import load_evidence, of_group
 
@@ -60,7 +60,7 @@ def quantiles(values: FloatArray) -> list[float]:
 def group_powers(riders: Riders, name: str, muscles: Anatomy) -> FloatArray:
     """Mean power of each group alone, W, each member best stimulated, shape (groups, members)."""
     design = load_design(name)
-    pulled = pull(riders, kinematics.solve(design, ANGLES), design.linkage.cadence, muscles)
+    pulled = pull(riders, kinematics.solve(design, TURN_ANGLES), design.linkage.cadence, muscles)
     windows, _ = best_windows(pulled.power, riders, design.linkage.cadence, each_its_own=True)
     answers = activation(windows, riders, design.linkage.cadence)
     return np.asarray(np.mean(answers * pulled.power, axis=-1)[..., 0])
@@ -69,7 +69,7 @@ def group_powers(riders: Riders, name: str, muscles: Anatomy) -> FloatArray:
 def group_rows(muscles: Anatomy, title: str) -> Iterator[tuple[Any, ...]]:
     """Gain of each group alone for time constants, without any fit; and of the vasti alone."""
     centre = {name: float(np.median(values)) for name, values in drawn(4001, np.random.default_rng(1)).items()}
-    groups = [*((name, number, 1.0) for number, name in enumerate(GROUPS)), ("vasti", 0, 0.0)]
+    groups = [*((name, number, 1.0) for number, name in enumerate(MUSCLE_GROUPS)), ("vasti", 0, 0.0)]
     for rise in (0.05, 0.07, 0.10):
         for group, number, rectus in groups:
             rider = riders_of_prior(1, **centre | {"rise_s": rise, "rectus_recruitment": rectus})

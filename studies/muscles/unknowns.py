@@ -12,13 +12,13 @@ from fes_mj.common.arrays import FloatArray
 from fes_mj.common.units import RPM
 from fes_mj.linkage import kinematics
 from fes_mj.linkage.design_file import SIX_BARS, load_design
-from fes_mj.moments.joint_moments import GROUPS as RIDER_GROUPS
+from fes_mj.moments.joint_moments import RIDER_GROUPS
 from fes_mj.muscles.anatomy import Anatomy
 from fes_mj.muscles.power import best_turn
 from fes_mj.muscles.prior import drawn
 from fes_mj.muscles.pull import pull
 from fes_mj.muscles.riders import Riders, load_riders
-from fes_mj.muscles.timing import ANGLES, activation, best_windows
+from fes_mj.muscles.timing import TURN_ANGLES, activation, best_windows
 from fes_mj.muscles.trial import quantities
 from studies.muscles.gains import probability, quantiles
 
@@ -36,7 +36,7 @@ def power(riders: Riders, name: str, rpm: float | None = None, muscles: Anatomy 
     cadence = design.linkage.cadence if rpm is None else rpm * RPM
     if muscles is None:
         return best_turn(riders, design, cadence)[0].power_mean[:, 0]
-    pulled = pull(riders, kinematics.solve(design, ANGLES), cadence, muscles)
+    pulled = pull(riders, kinematics.solve(design, TURN_ANGLES), cadence, muscles)
     windows, _ = best_windows(pulled.power, riders, cadence)
     return np.asarray(np.mean(activation(windows, riders, cadence) * pulled.power, axis=-1).sum(axis=0)[:, 0])
 

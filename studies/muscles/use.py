@@ -9,7 +9,7 @@ import numpy as np
 
 from fes_mj.common.arrays import FloatArray
 from fes_mj.linkage.design_file import DESIGNS, load_design
-from fes_mj.moments.joint_moments import GROUPS as RIDER_GROUPS
+from fes_mj.moments.joint_moments import RIDER_GROUPS
 from fes_mj.muscles.fatigue import AT, HALF_AN_HOUR, LEFT, force_factor, power_over_time, recoveries
 from fes_mj.muscles.power import MuscleTurn, best_turn
 from fes_mj.muscles.riders import Riders, load_riders

@@ -58,7 +58,7 @@ def test_what_does_not_turn_has_no_power() -> None:
 def test_blocks_do_not_matter(monkeypatch: pytest.MonkeyPatch) -> None:
     power, rows = uncertain("d1", fes_mj.load_moments()), dict.fromkeys((MOMENTS, RIDER), np.arange(COUNT))
     whole = power.at(rows)
-    monkeypatch.setattr("fes_mj.budget.power.BLOCK", 7)
+    monkeypatch.setattr("fes_mj.budget.power.ROW_BLOCK", 7)
     assert power.at(rows) == pytest.approx(whole, rel=1e-12)
 
 

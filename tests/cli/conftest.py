@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from fes_mj.cli.app import run
-from fes_mj.common.writing import RECORD
+from fes_mj.common.writing import FOLDER_RECORD
 
 
 def result(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str, str]:
@@ -18,7 +18,7 @@ def result(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, st
 
 def names(folder: Path) -> set[str]:
     """Names of the files in a folder, but for fes_mj's own record of them."""
-    return {path.name for path in folder.iterdir()} - {RECORD}
+    return {path.name for path in folder.iterdir()} - {FOLDER_RECORD}
 
 
 def answer(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, dict]:

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from fes_mj.cli.app import run
-from fes_mj.common.writing import RECORD
+from fes_mj.common.writing import FOLDER_RECORD
 from fes_mj.linkage.design import BRANCHES
 from fes_mj.linkage.design_file import DESIGNS
 
@@ -246,7 +246,7 @@ def _fuzz_outputs(seed: int, count: int, folder: Path, capsys: pytest.CaptureFix
         assert all(
             path.read_bytes() == content for path, content in kept.items() if path != out or path in (real, given)
         )
-        assert {path.name for path in folder.iterdir() if path.name.startswith(".")} <= {RECORD}
+        assert {path.name for path in folder.iterdir() if path.name.startswith(".")} <= {FOLDER_RECORD}
         for path in folder.iterdir():
             path.unlink()
     return refused

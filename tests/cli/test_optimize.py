@@ -14,7 +14,7 @@ from fes_mj.common.errors import UnstableError
 from fes_mj.linkage.design_file import design_toml
 from fes_mj.optimization.findings import Findings
 from fes_mj.optimization.limits import DEFAULT
-from fes_mj.optimization.search import Result
+from fes_mj.optimization.search import SearchResult
 
 PAPER = ["--limits", "paper"]  # without forces and clearances, which take long
 QUICK = ["--budget", "2000", "--searches", "1", "--seed", "2", *PAPER]
@@ -269,7 +269,7 @@ def test_ctrl_c_says_what_was_found_and_the_same_command_goes_on(
     undisturbed, best = capsys.readouterr().out, out.read_bytes()
     out.unlink()
 
-    def interrupted(findings: Findings, search: int, result: Result) -> None:
+    def interrupted(findings: Findings, search: int, result: SearchResult) -> None:
         finish(findings, search, result)
         if search == 1:
             raise KeyboardInterrupt

@@ -96,7 +96,7 @@ def test_a_ride_by_moments_says_first_that_they_do_not_fall_with_speed(capsys: p
 def test_starts(capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("numba")
     pytest.importorskip("matplotlib")
-    monkeypatch.setattr("fes_mj.riding.starts.ANGLES", 8)
+    monkeypatch.setattr("fes_mj.riding.starts.START_ANGLES", 8)
     code, content = answer(capsys, "ride", "r1", "--starts", "--duration", "5", "--out", str(tmp_path))
     assert code == 0
     assert 0 < content["start_share"] < 1

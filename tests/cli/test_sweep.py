@@ -69,7 +69,7 @@ def test_no_scheduler_loses_nothing(
     done: Sweep, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, address: str
 ) -> None:
     pytest.importorskip("distributed")
-    monkeypatch.setattr("fes_mj.common.parallel.PATIENCE", "1s")
+    monkeypatch.setattr("fes_mj.common.parallel.SCHEDULER_PATIENCE", "1s")
     done.path(1).unlink()
     before = sorted(path.name for path in done.folder.iterdir())
     study = done.folder.with_name("study.toml")

@@ -13,7 +13,7 @@ from fes_mj.common import reading as inputs
 from fes_mj.common.errors import InputError
 from fes_mj.common.reading import Section, read_json, read_text, read_toml
 from fes_mj.common.writing import (
-    RECORD,
+    FOLDER_RECORD,
     remove_leftovers,
     replacing,
     require_replaceable,
@@ -150,7 +150,7 @@ def test_a_file_that_nobody_named_is_replaced_only_as_it_was_written(measured: P
             require_replaceable([other, measured], "the table")
         write_files({other: "a,b\n1,2\n"}, unnamed=[other])
     require_replaceable([other], "the table")
-    assert len((measured.parent / RECORD).read_text().split()) == 1
+    assert len((measured.parent / FOLDER_RECORD).read_text().split()) == 1
     write_files({other: "a,b\n3,4\n"}, unnamed=[other])
     require_replaceable([other], "the table")
     with pytest.raises(InputError, match="would replace"):
@@ -165,7 +165,7 @@ def test_a_set_of_results_makes_its_folder(tmp_path: Path) -> None:
     paths = require_results(folder, ("a.json", "b/a.csv"))
     assert not folder.exists()
     write_results(dict.fromkeys(paths, "new"))
-    assert {path.name for path in folder.iterdir()} == {"a.json", "b", RECORD}
+    assert {path.name for path in folder.iterdir()} == {"a.json", "b", FOLDER_RECORD}
     assert require_results(folder, ("a.json", "b/a.csv")) == paths
     with pytest.raises(InputError, match="does not exist"):
         require_results(tmp_path / "no" / "made", ("a.json",))

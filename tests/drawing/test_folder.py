@@ -15,7 +15,7 @@ import shapely
 
 import fes_mj
 from fes_mj.drawing.folder import contents
-from fes_mj.drawing.pen import LAYERS
+from fes_mj.drawing.pen import PEN_LAYERS
 from fes_mj.linkage.design import Design
 from fes_mj.statics.sizes import Build, build
 
@@ -112,7 +112,7 @@ def test_moments_of_the_table_are_those_of_the_forces_beyond(made: Build, files:
 
 def test_lines_of_the_pictures_are_as_thick_as_the_layers_say(files: dict[Path, Any]) -> None:
     widths = {float(width) for width in re.findall(rb"stroke-width: ([\d.]+)", files[Path("sheet.svg")])}
-    assert {round(width * 25.4 / 72, 2) for width in widths} == {width / 100 for _, width, _ in LAYERS.values()}
+    assert {round(width * 25.4 / 72, 2) for width in widths} == {width / 100 for _, width, _ in PEN_LAYERS.values()}
 
 
 @pytest.mark.long

@@ -18,7 +18,7 @@ from fes_mj.linkage.joints import JOINTS
 from fes_mj.moments.averaging import coefficients, mean_of, weights_on
 from fes_mj.moments.files import load_moments, moments_csv, moments_of, sampled_coefficients, sampled_moments
 from fes_mj.moments.fourier import fourier
-from fes_mj.moments.joint_moments import GROUPS, JointMoments
+from fes_mj.moments.joint_moments import RIDER_GROUPS, JointMoments
 from fes_mj.moments.measurement import Measurement, load_measurement, measured_files
 from fes_mj.moments.measurement_file import Description
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE, ReferenceTricycle
@@ -313,7 +313,7 @@ def test_pedal_forces_of_a_simulation_give_its_moments_back(tmp_path: Path) -> N
 ROUNDING = 0.5e-4  # N m, of the files
 
 
-@pytest.mark.parametrize("group", GROUPS)
+@pytest.mark.parametrize("group", RIDER_GROUPS)
 def test_mean_and_covariance_are_those_of_the_drawn_curves(group: str) -> None:
     curves, shipped = sampled_coefficients(group), fes_mj.load_moments(group)
     assert curves.shape == (1000, 98)
@@ -327,7 +327,7 @@ def test_mean_and_covariance_are_those_of_the_drawn_curves(group: str) -> None:
 @pytest.mark.parametrize("name", DESIGNS)
 def test_power_and_its_error_are_those_of_the_drawn_curves(name: str) -> None:
     """Linear: to the rounding of the files and of the interpolation, not to a sampling error."""
-    for group in GROUPS:
+    for group in RIDER_GROUPS:
         shipped = quasi_static(fes_mj.load_design(name), fes_mj.load_moments(group))
         powers = sampled_coefficients(group) @ shipped.power_weights
         assert shipped.power_mean == pytest.approx(powers.mean(), abs=2e-3)

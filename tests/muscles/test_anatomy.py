@@ -6,7 +6,7 @@ import pytest
 from fes_mj.common.errors import InputError
 from fes_mj.linkage.design import Rider
 from fes_mj.linkage.riders import boot_height
-from fes_mj.muscles.anatomy import GROUPS, anatomy
+from fes_mj.muscles.anatomy import MUSCLE_GROUPS, anatomy
 from fes_mj.muscles.contraction import tension
 from fes_mj.muscles.geometry import Flexion
 
@@ -25,7 +25,7 @@ def test_muscles_pass_the_joints_that_anatomy_says():
         assert about == ({"hip", "knee"} if two else {"hip"} if name.startswith("glut") else {"knee"})
     for name, joint in EXTENSORS.items():
         assert (getattr(values, f"by_{joint}")[muscles.names.index(name)] > 0).all()
-    assert (values.by_knee[muscles.group == GROUPS.index("hamstrings")] < 0).all()
+    assert (values.by_knee[muscles.group == MUSCLE_GROUPS.index("hamstrings")] < 0).all()
     assert [name for name, rectus in zip(muscles.names, muscles.rectus, strict=True) if rectus] == ["rect_fem"]
 
 

@@ -5,7 +5,7 @@ from fes_mj.linkage.joints import PerJoint
 from fes_mj.moments.fourier import fourier
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.muscles.identification import Candidates, coefficients, identify
-from fes_mj.muscles.posterior import Posterior
+from fes_mj.muscles.posterior import WeighedRiders
 from fes_mj.muscles.power import muscle_turn
 from fes_mj.muscles.prior import drawn, priors, quantile
 from fes_mj.muscles.riders import Riders, load_riders
@@ -59,7 +59,7 @@ def test_strengths_are_those_of_gaussian_conditioning(riders):
 
 
 def test_members_come_as_often_as_they_weigh(riders):
-    posterior = Posterior(riders, np.log([1e-300, 1e-300, 3, 1e-300, 1e-300, 1, 1e-300, 1e-300]))
+    posterior = WeighedRiders(riders, np.log([1e-300, 1e-300, 3, 1e-300, 1e-300, 1, 1e-300, 1e-300]))
     assert sorted(posterior.members(8).likelihood) == [2.0] * 6 + [5.0] * 2
     assert posterior.effective == pytest.approx(1.6)
 

@@ -8,13 +8,13 @@ from fes_mj.linkage import kinematics
 from fes_mj.linkage.design_file import DESIGNS, load_design
 from fes_mj.muscles import instant, step
 from fes_mj.muscles.activation import answer, trapezium
-from fes_mj.muscles.anatomy import GROUPS
+from fes_mj.muscles.anatomy import MUSCLE_GROUPS
 from fes_mj.muscles.contraction import PLATEAU, tension
 from fes_mj.muscles.instant import LegMuscles, Stimulus, activated, joint_moments, stimulation, weights
 from fes_mj.muscles.pull import pull
-from fes_mj.muscles.timing import ANGLES, Windows, activation
+from fes_mj.muscles.timing import TURN_ANGLES, Windows, activation
 
-GROUP_NUMBERS = range(len(GROUPS))
+GROUP_NUMBERS = range(len(MUSCLE_GROUPS))
 
 
 def curves(leg, motion, cadence, active):
@@ -27,12 +27,12 @@ def curves(leg, motion, cadence, active):
 @pytest.mark.parametrize("name", DESIGNS)
 def test_moments_are_those_of_the_turn(name, riders):
     design = load_design(name)
-    motion, cadence = kinematics.solve(design, ANGLES[::20]), design.linkage.cadence
+    motion, cadence = kinematics.solve(design, TURN_ANGLES[::20]), design.linkage.cadence
     for row in (0, 5):
         pulled = pull(riders.taken([row]), motion, cadence).moment
         leg = LegMuscles.of(riders.taken([row]), design.rider).in_lists
         for group in GROUP_NUMBERS:
-            alone = curves(leg, motion, cadence, np.eye(len(GROUPS))[group])
+            alone = curves(leg, motion, cadence, np.eye(len(MUSCLE_GROUPS))[group])
             for joint, curve in zip(("knee", "hip"), alone, strict=True):
                 expected = pulled[joint][group, 0, 0]
                 assert curve == pytest.approx(expected, rel=1e-12, abs=1e-12 * np.abs(expected).max())
@@ -40,7 +40,7 @@ def test_moments_are_those_of_the_turn(name, riders):
 
 def test_moments_are_the_groups_together(riders):
     design = load_design("d2")
-    motion = kinematics.solve(design, ANGLES[::60])
+    motion = kinematics.solve(design, TURN_ANGLES[::60])
     leg, share = LegMuscles.of(riders.taken([2]), design.rider).in_lists, np.array([0.3, 0.5, 0.7])
     apart = [curves(leg, motion, 9.0, row) for row in np.diag(share)]
     assert curves(leg, motion, 9.0, share) == pytest.approx(np.sum(apart, axis=0), rel=1e-12)
@@ -65,7 +65,7 @@ def test_fibres_do_the_work_that_joints_do(riders):
         state = np.array([length(muscle, 0)]), np.array([speed])
         pulled, _ = tension(*state, optimal, leg.slack[muscle], pennation, leg.max_speed[muscle] / optimal)
         power -= leg.force[muscle] * pulled[0] * speed
-    moments = joint_moments(leg.in_lists, np.ones(len(GROUPS)), knee, hip, *rates.tolist())
+    moments = joint_moments(leg.in_lists, np.ones(len(MUSCLE_GROUPS)), knee, hip, *rates.tolist())
     assert moments @ rates == pytest.approx(power, rel=1e-6)
 
 
@@ -111,9 +111,9 @@ def test_stimulation_is_the_trapezium_over_any_turns():
 def test_steps_of_activation_are_those_of_the_turn(riders):
     member, turn = riders.taken([4]), 0.8
     rise, fall = float(member["rise_s"].item()), float(member.fall.item())
-    stimulus = trapezium(ANGLES - 1.0, 2.0, 0.4)
+    stimulus = trapezium(TURN_ANGLES - 1.0, 2.0, 0.4)
     expected = answer(stimulus, turn, rise, fall)
-    step, value = turn / len(ANGLES), float(expected[0])
+    step, value = turn / len(TURN_ANGLES), float(expected[0])
     rising, falling = weights(step, rise), weights(step, fall)
     for before, after, then in zip(stimulus, np.roll(stimulus, -1), np.roll(expected, -1), strict=True):
         value = activated(value, float(before), float(after), rising, falling)
@@ -135,5 +135,5 @@ def test_fine_steps_tell_what_a_turn_of_whole_degrees_leaves_open(riders):
     for before, after in pairwise(given):
         values.append(activated(values[-1], before, after, rising, falling))
     # what a corner between two degrees hides of the stimulation's area, at most, per time constant
-    hidden = (2 * np.pi / len(ANGLES)) ** 2 / (8 * stimulus.ramp) / (cadence * leg.rise)
+    hidden = (2 * np.pi / len(TURN_ANGLES)) ** 2 / (8 * stimulus.ramp) / (cadence * leg.rise)
     assert values[4 * steps :: 10] == pytest.approx(expected, abs=hidden)

@@ -5,7 +5,7 @@ from fes_mj.common.reading import read_toml
 from fes_mj.linkage import kinematics
 from fes_mj.linkage.design_file import DESIGNS, load_design
 from fes_mj.muscles.geometry import Flexion
-from fes_mj.muscles.passive import FILE, passive_moments, published
+from fes_mj.muscles.passive import PASSIVE_FILE, passive_moments, published
 
 
 @pytest.mark.parametrize("name", DESIGNS)
@@ -31,7 +31,9 @@ def test_distance_from_the_published_curves_is_the_stated_one():
     hip, knee = np.meshgrid(np.arange(30.0, 121), np.arange(10.0, 126))
     moments, said = passive_moments(Flexion(np.radians(hip), np.radians(knee))), published(hip, knee)
     distance = [float(np.abs(moments[joint] + said[joint]).max()) for joint in ("knee", "hip")]
-    assert distance == pytest.approx(read_toml(FILE, "passive moments").content["largest_distance_Nm"], abs=0.005)
+    assert distance == pytest.approx(
+        read_toml(PASSIVE_FILE, "passive moments").content["largest_distance_Nm"], abs=0.005
+    )
 
 
 def test_joints_are_pushed_back_from_their_ends():

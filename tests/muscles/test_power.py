@@ -4,7 +4,7 @@ import pytest
 from fes_mj.linkage import kinematics
 from fes_mj.linkage.design_file import load_design
 from fes_mj.muscles.power import best_power, best_turn
-from fes_mj.muscles.timing import ANGLES
+from fes_mj.muscles.timing import TURN_ANGLES
 
 
 def test_batch_is_each_of_its_designs_and_none_for_what_cannot_turn(riders):
@@ -20,7 +20,7 @@ def test_batch_is_each_of_its_designs_and_none_for_what_cannot_turn(riders):
 def test_joints_do_the_work_of_the_muscles_and_two_legs_are_half_a_turn_apart(riders):
     design = load_design("trt")
     turn, _ = best_turn(riders, design)
-    rates = kinematics.solve(design, ANGLES).joint_rate
+    rates = kinematics.solve(design, TURN_ANGLES).joint_rate
     joints = design.linkage.cadence * (turn.moment.knee * rates.knee + turn.moment.hip * rates.hip)
     assert joints == pytest.approx(turn.power, abs=1e-11)
     assert turn.two_legs == pytest.approx(turn.power + np.roll(turn.power, 180, axis=-1))

@@ -3,7 +3,7 @@ import pytest
 
 from fes_mj.linkage import kinematics
 from fes_mj.linkage.design_file import DESIGNS, load_design
-from fes_mj.muscles.anatomy import GROUPS
+from fes_mj.muscles.anatomy import MUSCLE_GROUPS
 from fes_mj.muscles.geometry import Flexion
 from fes_mj.muscles.pull import pull
 
@@ -41,7 +41,7 @@ def test_rectus_is_recruited_apart_and_groups_are_sums(riders):
     design = load_design("trt")
     pulled = pull(riders, kinematics.solve(design, ANGLE), design.linkage.cadence)
     rectus = pulled.anatomy.rectus
-    vasti = (pulled.anatomy.group == GROUPS.index("quadriceps")) & ~rectus
+    vasti = (pulled.anatomy.group == MUSCLE_GROUPS.index("quadriceps")) & ~rectus
     both = pulled.force * pulled.speed * pulled.scale
     assert pulled.power[0] == pytest.approx(-(both[vasti].sum(axis=0) + both[rectus][0]))
     relative = riders.strength(pulled.anatomy)[rectus][0] / riders.strength(pulled.anatomy)[vasti][0]

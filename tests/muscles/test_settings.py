@@ -11,7 +11,7 @@ from fes_mj.common.errors import InputError
 from fes_mj.common.units import RPM
 from fes_mj.linkage.design_file import load_design
 from fes_mj.linkage.turning import turning
-from fes_mj.muscles.anatomy import GROUPS, anatomy
+from fes_mj.muscles.anatomy import MUSCLE_GROUPS, anatomy
 from fes_mj.muscles.fatigue import FLOOR, HALF_AN_HOUR, force_factor
 from fes_mj.muscles.power import muscle_turn
 from fes_mj.muscles.setting import MISTIMED, Setting
@@ -52,7 +52,7 @@ def test_effort_is_one_where_everything_is_as_in_the_measurement(settings, rider
 
 def test_the_limit_is_kept_and_the_left_leg_is_half_a_turn_later(settings):
     rows = settings.summary()["windows"]
-    assert len(rows) == 2 * 2 * len(GROUPS)
+    assert len(rows) == 2 * 2 * len(MUSCLE_GROUPS)
     top = np.degrees(turning(D1).top_dead_centre)
     for right, left in zip(rows[::2], rows[1::2], strict=True):
         assert (right["leg"], left["leg"]) == ("right", "left")

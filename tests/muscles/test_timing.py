@@ -5,11 +5,11 @@ from fes_mj.linkage.design_file import load_design
 from fes_mj.muscles.power import best_turn
 from fes_mj.muscles.prior import ramp
 from fes_mj.muscles.riders import Riders
-from fes_mj.muscles.timing import ANGLES, DUTY, STEP, Windows, activation, widths_up_to
+from fes_mj.muscles.timing import DUTY, TURN_ANGLES, WINDOW_STEP, Windows, activation, widths_up_to
 
 DESIGN = load_design("d1")
 CADENCE = DESIGN.linkage.cadence
-ONS = np.arange(0.0, 360, STEP)
+ONS = np.arange(0.0, 360, WINDOW_STEP)
 
 
 def changed(riders, **values):
@@ -35,7 +35,7 @@ def test_no_other_window_of_any_width_is_better(riders, each_its_own):
     stimulated = windows.width[..., 0] > 0
     assert np.all((chosen - others)[stimulated] >= -1e-5 * others[stimulated])  # chosen in single precision
     assert np.all(windows.width <= 360 * DUTY)
-    assert np.all(windows.on % STEP == 0)
+    assert np.all(windows.on % WINDOW_STEP == 0)
 
 
 def test_a_share_is_taken_to_the_nearest_degree():
@@ -50,16 +50,16 @@ def test_equal_times_are_a_mean_with_the_adjoint(riders):
     order = np.arange(181) * CADENCE
     shift = np.exp(-1j * order * alike["delay_s"]) / (1 + 1j * order * alike["rise_s"])
     adjoint = np.fft.irfft(np.fft.rfft(turn.pulled.power) * np.conj(shift), 360)
-    stimulation = windows.at(ANGLES[None, None], CADENCE * ramp())
+    stimulation = windows.at(TURN_ANGLES[None, None], CADENCE * ramp())
     exact = np.mean(stimulation * adjoint, axis=-1)
     solved = np.mean(turn.activation * turn.pulled.power, axis=-1)
     assert solved == pytest.approx(exact, rel=2e-3, abs=1e-3 * float(np.abs(exact).max()))
 
 
 def test_delay_is_confounded_with_the_on_angle(riders):
-    step = np.radians(STEP) / CADENCE
+    step = np.radians(WINDOW_STEP) / CADENCE
     early, late = (best_turn(changed(riders, delay_s=n * step), DESIGN)[1] for n in (1, 3))
-    assert (early.on - late.on) % 360 == pytest.approx(2 * STEP)
+    assert (early.on - late.on) % 360 == pytest.approx(2 * WINDOW_STEP)
     assert early.width == pytest.approx(late.width)
 
 

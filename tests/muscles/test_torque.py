@@ -8,7 +8,7 @@ from fes_mj.linkage.joints import JOINTS
 from fes_mj.linkage.legs import ONE_LEG, TWO_LEGS
 from fes_mj.muscles.drive import Muscles, load_muscles
 from fes_mj.muscles.rules import BY_ANGLE, STIMULATION_BY_ANGLE
-from fes_mj.muscles.timing import ANGLES
+from fes_mj.muscles.timing import TURN_ANGLES
 
 STEPS = 720
 
@@ -55,11 +55,11 @@ def test_the_left_leg_does_the_same_half_a_turn_later(riders):
 
 @pytest.mark.parametrize("name", DESIGNS)
 def test_activation_of_a_rider_is_that_of_statics(name):
-    """But for what whole degrees leave open (timing.ANGLES)."""
+    """But for what whole degrees leave open (timing.TURN_ANGLES)."""
     design, muscles = load_design(name), load_muscles("p1p2", "measured")
     one = muscles.simulated(design, design.linkage.cadence)
     torque = muscles.torque(design, design.linkage.cadence)
-    assert torque.activation(ANGLES) == pytest.approx(one.turn.activation[:, 0, 0], abs=5e-4)
+    assert torque.activation(TURN_ANGLES) == pytest.approx(one.turn.activation[:, 0, 0], abs=5e-4)
 
 
 def test_by_angle_the_moments_of_the_measurement_are_mapped():

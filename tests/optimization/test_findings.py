@@ -17,7 +17,7 @@ from fes_mj.common.provenance import digest
 from fes_mj.optimization.findings import Findings
 from fes_mj.optimization.moment_drive import MomentDrive
 from fes_mj.optimization.optimize import run_searches
-from fes_mj.optimization.search import Result
+from fes_mj.optimization.search import SearchResult
 from tests.optimization.conftest import problem_of
 
 MARK = "FES_MJ_TEST_RUN"
@@ -95,7 +95,7 @@ def test_finished_searches_are_not_done_again(tmp_path: Path) -> None:
 def test_what_another_search_has_found_is_refused_by_name(tmp_path: Path) -> None:
     findings, problem = findings_at(tmp_path / "best.toml"), problem_of("d1")
     with findings.searching(problem_of("d1")):
-        findings.finish(0, Result(problem.variables(problem.template), 5.0, 10, np.array([[1, 5.0]])))
+        findings.finish(0, SearchResult(problem.variables(problem.template), 5.0, 10, np.array([[1, 5.0]])))
     before = contents(findings.folder)
     with pytest.raises(fes_mj.InputError, match=r"best\.search: .*different: command\).* fes_mj optimize\. "):
         findings_at(tmp_path / "best.toml", command="another").searching(problem).__enter__()
@@ -122,7 +122,7 @@ def test_a_kill_while_the_folder_is_removed_stops_nobody(
     findings, problem = findings_at(tmp_path / "best.toml"), problem_of("d1")
     x = problem.variables(problem.template)
     with findings.searching(problem):
-        findings.finish(0, Result(x, 5.0, 10, np.array([5.0])))
+        findings.finish(0, SearchResult(x, 5.0, 10, np.array([5.0])))
     unlink, removed = Path.unlink, []
 
     def killed(path: Path, missing_ok: bool = False) -> None:

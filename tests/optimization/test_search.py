@@ -10,7 +10,14 @@ import fes_mj
 from fes_mj.linkage.design_file import SIX_BARS
 from fes_mj.optimization.optimize import run_searches
 from fes_mj.optimization.problem import make_problem
-from fes_mj.optimization.search import STEP, BudgetSpentError, Search, differential, feasible_start, random_pursuit
+from fes_mj.optimization.search import (
+    TRIAL_STEP,
+    BudgetSpentError,
+    Search,
+    differential,
+    feasible_start,
+    random_pursuit,
+)
 from fes_mj.statics.turn import quasi_static
 from tests.optimization.conftest import problem_of
 
@@ -63,7 +70,7 @@ def test_random_pursuit_is_the_one_at_a_time_method() -> None:
     failures, improvements = 0, 0
     for x, merit in search.seen[1:]:
         assert failures < patience, "it should have stopped"
-        assert np.abs(x - best_x).max() <= STEP
+        assert np.abs(x - best_x).max() <= TRIAL_STEP
         if merit > best:
             best_x, best, failures, improvements = x, merit, 0, improvements + 1
         elif problem.evaluate(x[None]).feasible[0]:

@@ -7,7 +7,7 @@ import pytest
 
 import fes_mj
 from fes_mj.common.reading import DATA, read_toml
-from fes_mj.moments.joint_moments import GROUPS
+from fes_mj.moments.joint_moments import RIDER_GROUPS
 from fes_mj.paper.reproduce import figures_page
 from fes_mj.paper.runs import Runs
 
@@ -31,7 +31,7 @@ def runs(facts: Known) -> Runs:
     """What the figures over a turn need."""
     runs = Runs(facts, static={}, printed={}, dynamic={}, answers={}, people={}, rides=[], budgets={}, readings={})
     for name in ("trt", "r2", "d1"):
-        for group in GROUPS:
+        for group in RIDER_GROUPS:
             design, moments = fes_mj.load_design(name), fes_mj.load_moments(group)
             runs.static[name, group] = fes_mj.quasi_static(design, moments)
             for legs in (1, 2):
@@ -64,7 +64,7 @@ def test_curves_over_a_turn_close(name: str, runs: Runs) -> None:
 @pytest.mark.long
 def test_residuals_are_those_of_the_checks(runs: Runs) -> None:
     """The last row of Figure 4: nearly massless and with all masses, as `inverse_dynamics` and `massless_statics`."""
-    for axes, group in zip(FIGURES["figure-04-power-of-the-trt"](runs).axes[-2:], GROUPS, strict=True):
+    for axes, group in zip(FIGURES["figure-04-power-of-the-trt"](runs).axes[-2:], RIDER_GROUPS, strict=True):
         assert isinstance(axes, Axes)
         checks = {check.name: check.value for check in runs.dynamic["trt", group, 1].checks}
         drawn = [np.array(line.get_ydata(), float)[:-1] for line in axes.lines if len(np.array(line.get_ydata())) > 2]

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fes_mj.moments.joint_moments import GROUPS
+from fes_mj.moments.joint_moments import RIDER_GROUPS
 from fes_mj.paper.evidence import functional, load_evidence, of_group
 from fes_mj.paper.known import LeftOut, left_out, rms, scores
 from fes_mj.paper.reconstruction import Hyperparameters, choose_hyperparameters, condition
@@ -18,7 +18,7 @@ def predictions() -> list[LeftOut]:
 @pytest.mark.long
 def test_scores_in_closed_form_are_those_of_conditioning(predictions: list[LeftOut]) -> None:
     evidence = load_evidence()
-    for group in GROUPS:
+    for group in RIDER_GROUPS:
         quick = scores(of_group(evidence, group), choose_hyperparameters(evidence))
         long = [out.scores[0] for out in predictions if out.row.group == group]
         assert quick == pytest.approx(long, rel=1e-6, abs=1e-9)
@@ -27,7 +27,7 @@ def test_scores_in_closed_form_are_those_of_conditioning(predictions: list[LeftO
 @pytest.mark.long
 def test_leaving_the_trt_out_leaves_its_twin_out_too(predictions: list[LeftOut]) -> None:
     """Without both, the TRT is predicted less surely than with the 15 W item."""
-    for group in GROUPS:
+    for group in RIDER_GROUPS:
         alone, both = (out for out in predictions if out.row.group == group and out.row.design == "trt")
         assert both.title == "itself and the 15 W item"
         for one, other in zip((alone.numbers, alone.text), (both.numbers, both.text), strict=True):
@@ -39,7 +39,7 @@ def test_stated_errors_hold(predictions: list[LeftOut]) -> None:
     """With the right errors the rms is 1, within the 0.2 that 12 scores leave, and the 0.3 of a group's six."""
     both = rms(np.array([out.scores for out in predictions]))
     assert np.all((both > 0.8) & (both < 1.2))
-    for group in GROUPS:
+    for group in RIDER_GROUPS:
         assert np.all(rms(np.array([out.scores for out in predictions if out.row.group == group])) < 1.3)
 
 

@@ -7,7 +7,7 @@ import pytest
 
 from fes_mj import load_design, load_moments, quasi_static
 from fes_mj.linkage.assembly import grashof_margin, joint_ranges
-from fes_mj.moments.joint_moments import GROUPS
+from fes_mj.moments.joint_moments import RIDER_GROUPS
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.paper.evidence import functional, load_evidence
 from fes_mj.paper.identification import identify
@@ -30,7 +30,7 @@ def test_other_readings_do_not_fit() -> None:
     assert not identify(printed, row, math.radians(60), math.radians(90)).feasible
 
 
-@pytest.mark.parametrize("group", GROUPS)
+@pytest.mark.parametrize("group", RIDER_GROUPS)
 def test_recovered_moments_give_the_printed_powers(group: str) -> None:
     """Within three of the evidence's own errors (0.1 W for the TRT, 0.4 W for the rounded six-bars)."""
     moments = load_moments(group)
@@ -39,7 +39,7 @@ def test_recovered_moments_give_the_printed_powers(group: str) -> None:
         assert power == pytest.approx(row.power[group], abs=0.3 if name == "trt" else 1.2), name
 
 
-@pytest.mark.parametrize("group", GROUPS)
+@pytest.mark.parametrize("group", RIDER_GROUPS)
 def test_the_15_watts_of_section_3_are_predicted_without_being_used(group: str) -> None:
     rows = [row for row in load_evidence() if row.group == group]
     others = [row for row in rows if row.quantity != "crank_power"]

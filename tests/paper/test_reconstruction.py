@@ -9,7 +9,7 @@ import pytest
 from fes_mj.common.errors import InputError
 from fes_mj.common.reading import DATA
 from fes_mj.moments.files import sampled_coefficients
-from fes_mj.moments.joint_moments import GROUPS
+from fes_mj.moments.joint_moments import RIDER_GROUPS
 from fes_mj.paper.evidence import functional, load_evidence, of_group
 from fes_mj.paper.reconstruction import (
     Hyperparameters,
@@ -33,7 +33,7 @@ def chosen() -> Hyperparameters:
     return choose_hyperparameters(load_evidence())
 
 
-@pytest.mark.parametrize("group", GROUPS)
+@pytest.mark.parametrize("group", RIDER_GROUPS)
 def test_what_ships_is_what_evidence_and_text_give(group: str, chosen: Hyperparameters) -> None:
     """The tool's curves again. Rounding may carry one curve in a thousand over a bound of the text, not ten."""
     evidence = load_evidence()
@@ -45,7 +45,7 @@ def test_what_ships_is_what_evidence_and_text_give(group: str, chosen: Hyperpara
 def test_the_likelihood_has_one_maximum_inside_its_bounds(chosen: Hyperparameters) -> None:
     """On a grid beyond the bound of the length no prior is more likely."""
     evidence = load_evidence()
-    systems = [System.of(of_group(evidence, group)) for group in GROUPS]
+    systems = [System.of(of_group(evidence, group)) for group in RIDER_GROUPS]
     best = sum(system.log_likelihood(chosen) for system in systems)
     for length in np.geomspace(0.2, 2.0, 25):
         for amplitude in np.geomspace(1, 40, 25):
@@ -73,7 +73,7 @@ def test_the_quick_way_to_leave_rows_out_is_the_long_one() -> None:
     """Closed form against conditioning on the other rows, and never below the residual."""
     evidence = load_evidence()
     chosen = choose_hyperparameters(evidence)
-    for group in GROUPS:
+    for group in RIDER_GROUPS:
         rows = [row for row in evidence if row.group == group]
         posterior = condition(rows, chosen)
         for row, miss in zip(rows, left_out_misses(rows, chosen), strict=True):

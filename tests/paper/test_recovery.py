@@ -2,7 +2,7 @@
 
 import pytest
 
-from fes_mj.moments.joint_moments import GROUPS
+from fes_mj.moments.joint_moments import RIDER_GROUPS
 from fes_mj.paper.evidence import load_evidence
 from fes_mj.paper.known import Known, known
 from fes_mj.paper.recovery import (
@@ -40,7 +40,7 @@ def test_what_ships_fulfils_what_was_said(facts: Known) -> None:
 def test_tables_of_calibration_agree(facts: Known) -> None:
     chosen = sensitivity_table(facts).records()[0]
     by_group = {row["group"]: row for row in calibration_table(facts).records()}
-    for group in GROUPS:
+    for group in RIDER_GROUPS:
         assert chosen[f"rms of scores, {group}"] == pytest.approx(by_group[group]["rms, numbers alone"], rel=1e-6)
     assert by_group["both"]["scores"] == len(left_out_table(facts).rows) == 12
     assert {row["evidence"] for row in knee_table(facts).records() if row["group"] == "p1p3"} == {"not used"}

@@ -9,7 +9,7 @@ import fes_mj
 from fes_mj.common.errors import InputError
 from fes_mj.moments.files import moments_of, sampled_coefficients
 from fes_mj.moments.fourier import fourier
-from fes_mj.moments.joint_moments import GROUPS
+from fes_mj.moments.joint_moments import RIDER_GROUPS
 from fes_mj.paper import statements
 from fes_mj.paper.evidence import load_evidence, of_group
 from fes_mj.paper.reconstruction import choose_hyperparameters, condition, draw
@@ -45,7 +45,7 @@ def test_power_of_a_statement_is_the_solvers() -> None:
             assert value == pytest.approx(power.min() / power.max(), abs=1e-3)
 
 
-@pytest.mark.parametrize("group", GROUPS)
+@pytest.mark.parametrize("group", RIDER_GROUPS)
 def test_every_curve_that_ships_fulfils_the_text(group: str) -> None:
     """But for what rounding its coefficients to 1e-4 N m moves across a bound."""
     curves = sampled_coefficients(group)
@@ -53,7 +53,7 @@ def test_every_curve_that_ships_fulfils_the_text(group: str) -> None:
         assert np.mean(statement.holds(curves)) > 0.99, statement.name
 
 
-@pytest.mark.parametrize("group", GROUPS)
+@pytest.mark.parametrize("group", RIDER_GROUPS)
 def test_drawn_curves_have_the_posteriors_mean_and_covariance(group: str) -> None:
     """Against the closed form, in standard errors of 20,000 draws; five of them for 98 means at once."""
     evidence, count = load_evidence(), 20_000

@@ -11,7 +11,7 @@ import fes_mj
 from fes_mj.linkage import kinematics
 from fes_mj.linkage.inertia import GRAVITY
 from fes_mj.linkage.legs import TWO_LEGS
-from fes_mj.moments.drive import POINTS
+from fes_mj.moments.drive import DRIVE_POINTS
 from fes_mj.moments.torque_map import torque_map
 from fes_mj.riding.differences import speed_difference
 from fes_mj.riding.leg_table import CELL_TOLERANCE, STEP_TOLERANCE, LegTable, leg_table
@@ -154,7 +154,7 @@ def test_the_table_is_finer_where_the_linkage_is_sharp(smooth_moments: fes_mj.Jo
     sharp, blunt = fes_mj.load_design(DESIGNS / "sharp.toml"), fes_mj.load_design("trt")
     table = leg_table(sharp, smooth_moments)
     cells = len(table.ahead)
-    assert cells > len(leg_table(blunt, smooth_moments).ahead) == POINTS
+    assert cells > len(leg_table(blunt, smooth_moments).ahead) == DRIVE_POINTS
     inertia, rate, cell = table.masses.inertia, table.masses.inertia_rate, 2 * np.pi / cells
     row, missed = 0, 0.0
     while row < cells:
@@ -176,8 +176,8 @@ def test_muscles_and_road_balance(smooth_moments: fes_mj.JointMoments) -> None:
 
 def test_a_turn_less_a_rounding_error_is_in_the_last_cell() -> None:
     """Where a crank that rolls back has just passed its zero."""
-    row, part = place(-1e-20, POINTS)
-    assert (row, part) == (POINTS - 1, pytest.approx(1.0))
+    row, part = place(-1e-20, DRIVE_POINTS)
+    assert (row, part) == (DRIVE_POINTS - 1, pytest.approx(1.0))
 
 
 def test_the_steady_ripple_is_that_of_a_long_ride(smooth_moments: fes_mj.JointMoments) -> None:

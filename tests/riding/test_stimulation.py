@@ -13,7 +13,7 @@ import fes_mj
 from fes_mj.linkage.assembly import joint_ranges
 from fes_mj.linkage.kinematics import solve
 from fes_mj.linkage.turning import turning
-from fes_mj.riding.stimulation import CORE, LEAST_SHARE, MUSCLES, Window, stimulation, summary, table_csv
+from fes_mj.riding.stimulation import CORE, LEAST_SWING, MUSCLES, Window, stimulation, summary, table_csv
 
 
 def of(windows: list[Window], muscle: str, leg: str = "right") -> list[Window]:
@@ -46,7 +46,7 @@ def test_a_moment_drives_the_crank_inside_and_brakes_it_outside(design: fes_mj.D
                 near |= np.abs((middles - end + np.pi) % (2 * np.pi) - np.pi) < 0.01
         assert (work[inside & ~near] > 0).all()
         left_out = work[~inside & ~near]
-        assert left_out[left_out > 0].sum() < LEAST_SHARE * work[work > 0].sum()
+        assert left_out[left_out > 0].sum() < LEAST_SWING * work[work > 0].sum()
         assert (left_out < 0).mean() > 0.8
 
 
@@ -54,7 +54,7 @@ def test_swing_and_core(design: fes_mj.Design) -> None:
     windows, ranges = stimulation(design), np.radians(joint_ranges(design))
     # what extends comes back, but for what is left out
     extended, flexed = (sum(window.swing for window in of(windows, muscle)) for muscle in ("quadriceps", "hamstrings"))
-    assert extended == pytest.approx(flexed, rel=LEAST_SHARE)
+    assert extended == pytest.approx(flexed, rel=LEAST_SWING)
     assert max(window.swing for window in of(windows, "quadriceps")) <= ranges[1] - ranges[0] + 1e-5
     assert max(window.swing for window in of(windows, "gluteus")) == pytest.approx(ranges[3] - ranges[2], rel=1e-3)
     for window in windows:

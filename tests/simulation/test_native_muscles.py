@@ -20,7 +20,7 @@ from fes_mj.linkage import kinematics
 from fes_mj.muscles.anatomy import anatomy
 from fes_mj.muscles.geometry import Flexion
 from fes_mj.muscles.pull import pull
-from fes_mj.muscles.timing import ANGLES
+from fes_mj.muscles.timing import TURN_ANGLES
 from fes_mj.simulation.native_fit import native_curve
 from fes_mj.simulation.native_muscles import NativeMuscles, native_muscles
 from fes_mj.statics.muscle_static import MuscleStatic
@@ -87,7 +87,7 @@ def test_lengths_arms_and_forces_are_within_what_is_stated(
 
 def test_forces_are_within_what_is_stated() -> None:
     """The curves at the exact lengths and speeds, beside the forces of the other implementation."""
-    pulled = pull(DRIVE.riders.most_probable, kinematics.solve(DESIGN, ANGLES), CADENCE)
+    pulled = pull(DRIVE.riders.most_probable, kinematics.solve(DESIGN, TURN_ANGLES), CADENCE)
     rider = DRIVE.riders.most_probable
     isometric, slack = MUSCLES.force * rider.strength(MUSCLES).ravel(), rider.slack(MUSCLES).ravel()
     for row, muscle in enumerate(fitted().muscles):

@@ -15,7 +15,7 @@ from fes_mj.cli.export import _Variant
 from fes_mj.common.errors import InputError
 from fes_mj.linkage.design_file import DESIGNS
 from fes_mj.linkage.joints import JOINTS
-from fes_mj.moments.drive import POINTS, drive
+from fes_mj.moments.drive import DRIVE_POINTS, drive
 from fes_mj.moments.torque_map import torque_map
 from fes_mj.simulation.variants import VARIANTS, variant_model, variant_options
 from fes_mj.statics.turn import quasi_static
@@ -152,7 +152,9 @@ def test_the_brake_lets_the_muscles_keep_the_cadence(name: str) -> None:
     ]
     while crank.qpos[0] < 2 * math.pi * turns:
         for actuator, command, lag in drives:
-            data.ctrl[actuator] = command[round((float(crank.qpos[0]) - lag) / (2 * math.pi) * POINTS) % POINTS]
+            data.ctrl[actuator] = command[
+                round((float(crank.qpos[0]) - lag) / (2 * math.pi) * DRIVE_POINTS) % DRIVE_POINTS
+            ]
         mujoco.mj_step(built, data)
         if crank.qpos[0] > 2 * math.pi * (turns - 5):
             speeds.append(float(crank.qvel[0]))

@@ -11,7 +11,7 @@ from fes_mj.linkage import kinematics
 from fes_mj.linkage.turning import turning
 from fes_mj.muscles.prior import drawn
 from fes_mj.muscles.riders import Riders
-from fes_mj.muscles.timing import ANGLES
+from fes_mj.muscles.timing import TURN_ANGLES
 from fes_mj.validation import cranking, machines, roads
 from fes_mj.validation.by_angle import torque_ratio_by_angle
 from fes_mj.validation.published import AGREES, CANNOT_TELL, CONTRADICTS, prediction, rows, verdict
@@ -60,7 +60,7 @@ def test_isometric_torque_is_that_of_a_crank_that_hardly_turns(riders):
     """Knee moment at rest, beside the slow limit of the moment along a turn."""
     from fes_mj.muscles.pull import pull
 
-    motion = kinematics.solve(cranking.TRICYCLE, ANGLES[::30])
+    motion = kinematics.solve(cranking.TRICYCLE, TURN_ANGLES[::30])
     knee, hip = (180 - np.degrees(angle) for angle in motion.joint_angle)
     slow = pull(riders, motion, 1e-9).moment.knee[0, :, 0]
     assert cranking.isometric(riders, hip, knee) == pytest.approx(slow, rel=1e-6, abs=1e-6)
@@ -83,7 +83,7 @@ def test_torque_ratio_is_that_of_powers(riders):
 def test_the_stepper_moves_the_pedal_on_an_ellipse(crank, flatness):
     design = machines.stepper(crank, flatness, 30)
     turning(design)
-    motion = kinematics.solve(design, ANGLES)
+    motion = kinematics.solve(design, TURN_ANGLES)
     path = motion.points["pedal"].value * np.conj(cranking.TRICYCLE.linkage.crank_centre)
     path = (path - (path.real.max() + path.real.min()) / 2) / abs(cranking.TRICYCLE.linkage.crank_centre)
     assert np.ptp(path.real) / 2 == pytest.approx(crank, rel=2e-3)

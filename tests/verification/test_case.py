@@ -7,7 +7,7 @@ import pytest
 import fes_mj
 from fes_mj.simulation import stepping
 from fes_mj.verification.case import VerificationCase
-from fes_mj.verification.suite import FULL, verify
+from fes_mj.verification.suite import FULL_CHECKS, verify
 
 MOST_RUNS = 12 + 6  # of the bench, and three rides, each with a trial at twice the step
 
@@ -24,9 +24,9 @@ def test_a_full_verification_makes_few_runs(monkeypatch: pytest.MonkeyPatch) -> 
         if vars(module).get("run_loop") is run_loop:
             monkeypatch.setattr(module, "run_loop", counted)
     case = VerificationCase(fes_mj.load_design("d1"), fes_mj.load_moments("p1p2"), refined=True)
-    checks = list(verify(case, FULL))
+    checks = list(verify(case, FULL_CHECKS))
     needed = len(runs)
     assert 0 < needed <= MOST_RUNS
-    assert list(verify(case, FULL)) == checks
+    assert list(verify(case, FULL_CHECKS)) == checks
     _ = case.as_json(), case.curves, case.uncertainty, case.summary()
     assert len(runs) == needed  # tables and reports simulate nothing again

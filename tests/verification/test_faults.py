@@ -8,7 +8,7 @@ from fes_mj.crosscheck.pipeline import Pipeline
 from fes_mj.verification.case import VerificationCase
 from fes_mj.verification.faults import Fault, inject, passing
 from fes_mj.verification.mistakes import faults
-from fes_mj.verification.suite import QUICK, ride_checks, two_leg_checks, verify
+from fes_mj.verification.suite import QUICK_CHECKS, ride_checks, two_leg_checks, verify
 from tests.verification.conftest import case_of
 
 ROOT = Path(__file__).parents[2]
@@ -34,7 +34,7 @@ def test_the_guard_notices(fault: Fault, case: VerificationCase, baseline: dict[
 
 @pytest.fixture(scope="module")
 def muscle_baseline(muscle_case: VerificationCase) -> dict[str, bool]:
-    return {check.name: check.ok for check in verify(muscle_case, (*QUICK, two_leg_checks, ride_checks))}
+    return {check.name: check.ok for check in verify(muscle_case, (*QUICK_CHECKS, two_leg_checks, ride_checks))}
 
 
 @pytest.mark.long

@@ -10,7 +10,7 @@ from fes_mj.linkage import kinematics
 from fes_mj.linkage.design_file import DESIGNS, DIMENSIONS, design_path, design_toml
 from fes_mj.linkage.kinematics import Rotation
 from fes_mj.linkage.variables import VARIABLES
-from fes_mj.verification.geometry import POSES, closure_error, file_error, measure, rate_errors
+from fes_mj.verification.geometry import FILE_ANGLES, closure_error, file_error, measure, rate_errors
 
 
 def test_rate_errors_see_an_error_of_a_millionth(design: fes_mj.Design, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -35,7 +35,7 @@ def test_a_nan_anywhere_is_an_error(design: fes_mj.Design) -> None:
 
 
 def error(path: Path, design: fes_mj.Design) -> float:
-    return file_error(path, kinematics.solve(design, POSES))
+    return file_error(path, kinematics.solve(design, FILE_ANGLES))
 
 
 @pytest.mark.parametrize("dims", DIMENSIONS)
@@ -56,7 +56,7 @@ def test_a_right_branch_and_a_negative_foot_too(tmp_path: Path) -> None:
 def test_a_slip_in_any_dimension_is_seen(name: str) -> None:
     design = fes_mj.load_design(name)
     path, seen = design_path(name), set()
-    for symbol in measure(kinematics.solve(design, POSES)):
+    for symbol in measure(kinematics.solve(design, FILE_ANGLES)):
         variable = VARIABLES[symbol]
         if name not in variable.kinds and design.linkage.kind not in variable.kinds:
             continue  # a CRT has no gamma

@@ -9,7 +9,7 @@ from fes_mj.common.checks import definitions
 from fes_mj.common.reading import read_toml
 from fes_mj.verification.case import VerificationCase
 from fes_mj.verification.faults import inject
-from fes_mj.verification.mistakes import EDITS, RIDE_STEPS, STEPS, faults
+from fes_mj.verification.mistakes import EDITS, MISTAKEN_STEPS, RIDE_STEPS, faults
 from fes_mj.verification.muscle_mistakes import MUSCLE_STEPS
 from fes_mj.verification.suite import ride_checks
 from tests.verification.conftest import case_of, muscle_case_of
@@ -19,7 +19,7 @@ ROOT = Path(__file__).parents[2]
 
 def test_every_fault_is_explained_and_made_in_one_way() -> None:
     rows = read_toml(ROOT / "fes_mj" / "data" / "faults.toml", "faults").content
-    assert sorted([*STEPS, *EDITS, *RIDE_STEPS, *MUSCLE_STEPS]) == sorted(rows)
+    assert sorted([*MISTAKEN_STEPS, *EDITS, *RIDE_STEPS, *MUSCLE_STEPS]) == sorted(rows)
     assert definitions().keys() >= GUARDS
 
 
