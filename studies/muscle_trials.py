@@ -21,8 +21,8 @@ from fes_mj.moments.fourier import HARMONICS, TERMS
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.reference_tricycle import ReferenceTricycle
 from fes_mj.muscles.chains import moved
-from fes_mj.muscles.identification import Candidates, identify
-from fes_mj.muscles.prior import drawn
+from fes_mj.muscles.identification import Candidates, identify_riders
+from fes_mj.muscles.prior import prior_draws
 from fes_mj.muscles.recovery import gains
 from fes_mj.muscles.riders import Riders
 from fes_mj.muscles.trial import explained_share, measured_moments
@@ -49,7 +49,7 @@ def turns_of(values: FloatArray, measured_on: ReferenceTricycle, random: np.rand
 def tables() -> list[Table]:
     """How many of the true gains lie within intervals of the posterior, by six-bar; and how much is explained."""
     example, random = load_moments(ROOT / "examples" / "trial" / "trial.toml"), np.random.default_rng(11)
-    known = replace(Riders("truth", drawn(RIDERS, random), np.zeros(RIDERS)), measured_on=example.measured_on)
+    known = replace(Riders("truth", prior_draws(RIDERS, random), np.zeros(RIDERS)), measured_on=example.measured_on)
     exact = measured_moments(example, HARMONICS)
     seen = Candidates.of(known, exact._replace(covariance=np.zeros_like(exact.covariance) + 1e-9 * np.eye(2 * TERMS)))
     designs, base = [load_design(name) for name in SIX_BARS], load_design("trt")
@@ -57,7 +57,9 @@ def tables() -> list[Table]:
     for row in range(RIDERS):
         trial = turns_of(seen.simulated(row, random), example.measured_on, random)
         measured = measured_moments(trial)
-        members = moved(identify(measured, random, CANDIDATES).flattened().members(MEMBERS), measured, random, STEPS)
+        members = moved(
+            identify_riders(measured, random, CANDIDATES).flattened().members(MEMBERS), measured, random, STEPS
+        )
         found = gains(members, designs, base)
         ranks.append(np.mean(found < gains(members, designs, base, known=known.taken([row])), axis=1))
         shares.append(explained_share(members, trial))

@@ -11,14 +11,15 @@ from fes_mj.moments.joint_moments import RIDER_GROUPS
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.moments.uncertainty import power_weights
 from fes_mj.muscles.anatomy import MUSCLE_GROUPS
-from fes_mj.muscles.identification import WHOLE, Measured, identify
+from fes_mj.muscles.identification import WHOLE, Measured, identify_riders
+from fes_mj.muscles.posterior import MEMBERS
 from fes_mj.muscles.riders import SHIPPED
 from fes_mj.muscles.timing import TURN_ANGLES
 from fes_mj.paper.evidence import load_evidence, of_group
 from fes_mj.paper.reconstruction import System
 from fes_mj.paper.statements import TEXT
 
-CANDIDATES, MEMBERS = 40_000, 200
+CANDIDATES = 40_000
 SEED = 26
 # Who does the work that the text gives to extensors or flexors of the knee.
 WORKERS = {"knee extensors": "quadriceps", "knee flexors": "hamstrings"}
@@ -46,7 +47,7 @@ def measured(group: str) -> Measured:
 
 def main() -> None:
     for group in RIDER_GROUPS:
-        posterior = identify(measured(group), np.random.default_rng(SEED), CANDIDATES, group)
+        posterior = identify_riders(measured(group), np.random.default_rng(SEED), CANDIDATES, group)
         print(f"{group}: {CANDIDATES} candidates are worth {posterior.effective:.0f} independent riders")
         posterior.members(MEMBERS).save(SHIPPED / f"{group}.npz")
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from fes_mj.budget.unknowns import DIMENSIONS, priors
+from fes_mj.budget.unknowns import DIMENSIONS, budget_priors
 from fes_mj.common.reading import DATA
 from fes_mj.common.writing import replacing, write_text
 from fes_mj.linkage.assembly import joint_ranges
@@ -25,7 +25,7 @@ _SEED = 2022
 
 def half_widths(name: str) -> dict[str, float]:
     """By component how far a linkage may be from the print, in the unit of files."""
-    angles = {key: priors()[DIMENSIONS][f"{key}_deg"] for key in ("seat_angle", "gamma")}
+    angles = {key: budget_priors()[DIMENSIONS][f"{key}_deg"] for key in ("seat_angle", "gamma")}
     kind = load_design(name).linkage.kind
     return dict.fromkeys(LENGTHS, LENGTH_ROUNDING) | {
         symbol: width for symbol, width in angles.items() if kind in VARIABLES[symbol].kinds

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from fes_mj.budget.power import RealisationRows, UncertainPower
-from fes_mj.budget.unknowns import EXTRAPOLATION, MASSES, MOMENTS, priors
+from fes_mj.budget.unknowns import EXTRAPOLATION, MASSES, MOMENTS, budget_priors
 from fes_mj.common.arrays import FloatArray, IntArray
 from fes_mj.common.brief import Brief
 from fes_mj.common.errors import require_extra
@@ -73,7 +73,10 @@ def error_budget(*legs: QuasiStatic, draws: int = BUDGET_DRAWS) -> ErrorBudget |
         return None
     uncertain = [UncertainPower(leg, draws) for leg in legs]
     alone, known = np.arange(draws), _linear(legs) | {MASSES: 0.0}
-    by = {name: known[name] if name in known else Spread.of(powers(uncertain, {name: alone})).sd for name in priors()}
+    by = {
+        name: known[name] if name in known else Spread.of(powers(uncertain, {name: alone})).sd
+        for name in budget_priors()
+    }
     return ErrorBudget(by, Spread.of(total), draws)
 
 
@@ -87,7 +90,7 @@ def paper_powers(*legs: QuasiStatic, draws: int = BUDGET_DRAWS) -> FloatArray | 
     return drawn
 
 
-def summary(budget: ErrorBudget | None) -> dict[str, Any]:
+def budget_summary(budget: ErrorBudget | None) -> dict[str, Any]:
     """The result as JSON names and units it; null where the error of the moments is not known."""
     if budget is None:
         return dict.fromkeys(("power_sd_total_W", "power_sd_by"))
@@ -102,7 +105,7 @@ def summary(budget: ErrorBudget | None) -> dict[str, Any]:
 
 def unknowns() -> list[str]:
     """Names of what is drawn."""
-    return [name for name in priors() if name != MASSES]
+    return [name for name in budget_priors() if name != MASSES]
 
 
 def together(names: Iterable[str], count: int, times: int = 1) -> dict[str, IntArray]:
@@ -140,7 +143,7 @@ class Share(NamedTuple):
     total_error: float
 
 
-def shares(
+def sobol_shares(
     power: Callable[[dict[str, IntArray]], FloatArray], names: Sequence[str], count: int, samples: int = SOBOL_SAMPLES
 ) -> dict[str, Share]:
     """Sobol's first and total order of a power, W, as a function of one of `count` realisations of each unknown.

@@ -56,7 +56,7 @@ def drawn_designs(design: Design, count: int) -> Design:
 
 
 @cache
-def priors() -> dict[str, dict[str, Any]]:
+def budget_priors() -> dict[str, dict[str, Any]]:
     """What data/error_budget.toml says of each unknown, in its order."""
     return dict(read_toml(_FILE, "priors of the error budget").content)
 
@@ -73,7 +73,7 @@ def _coefficients(moments: JointMoments, count: int) -> FloatArray:
 
 
 def _legs(design: Design, count: int, random: np.random.Generator) -> dict[str, FloatArray]:
-    errors = priors()[RIDER]["length_sd_m"] * random.standard_normal((2, count))
+    errors = budget_priors()[RIDER]["length_sd_m"] * random.standard_normal((2, count))
     return {name: component(design, name) + error for name, error in zip(("thigh", "shank"), errors, strict=True)}
 
 

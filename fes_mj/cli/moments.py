@@ -7,16 +7,17 @@ import numpy as np
 
 from fes_mj.cli.options import Flag, Out, PrintOptions, warn_of
 from fes_mj.cli.tables import span, with_error
-from fes_mj.common.console import print_table, progress_bar, say, verdict
+from fes_mj.common.console import check_word, print_table, progress_bar, say
 from fes_mj.common.errors import InputError, require_extra
 from fes_mj.common.units import RPM
 from fes_mj.common.writing import PICTURES, require_replaceable, require_writable, write_files
 from fes_mj.moments.files import load_moments, measurement_toml, moments_csv
-from fes_mj.moments.identification import identify as identify_tricycle
+from fes_mj.moments.identification import identify_tricycle as identify_tricycle
 from fes_mj.moments.joint_moments import RIDER_GROUPS, JointMoments
 from fes_mj.moments.measurement import Measurement, load_measurement, measured_files
 from fes_mj.muscles.identification import STAGES
-from fes_mj.muscles.trial import MEMBERS, fit_muscles as fit_riders, quantities
+from fes_mj.muscles.posterior import MEMBERS
+from fes_mj.muscles.trial import fit_muscles as fit_riders, quantities
 
 _CANDIDATES, _STEPS = 3000, 100  # of a fit of muscles, together a minute on one core
 
@@ -109,7 +110,7 @@ def _print(measurement: Measurement, content: dict[str, Any], out: Path | None) 
     print_table(f"{own.name}, measured on {_tricycle(own)}", ("", "understood"), rows)
     if measurement.comparisons:
         compared = [
-            (row.quantity, row.recorded, row.declared, verdict(row.agrees, "contradicts"))
+            (row.quantity, row.recorded, row.declared, check_word(row.agrees, "contradicts"))
             for row in measurement.comparisons
         ]
         print_table("Is it plausible?", ("", "recorded", "declared or expected", ""), compared)

@@ -12,7 +12,7 @@ from cyclopts.validators import Number
 
 import fes_mj
 from fes_mj.budget.answer import Answer
-from fes_mj.budget.budget import error_budget, summary
+from fes_mj.budget.budget import budget_summary, error_budget
 from fes_mj.cli import tables
 from fes_mj.cli.answers import Answered, print_answer
 from fes_mj.cli.drive import DriveOptions
@@ -98,7 +98,7 @@ def _content(case: fes_mj.Case, answer: Answer, checks: Sequence[Check], source:
     return (
         case.summary()
         | answer.summary()
-        | ({} if isinstance(case.statics, MuscleStatic) else summary(error_budget(*case.statics.turns)))
+        | ({} if isinstance(case.statics, MuscleStatic) else budget_summary(error_budget(*case.statics.turns)))
         | {"agrees": all(check.ok for check in checks), "checks": [check.as_json() for check in checks]}
         | {"design_toml": design_toml(case.design), "provenance": source}
     )

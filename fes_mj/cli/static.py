@@ -5,7 +5,7 @@ from typing import Annotated, Any
 import numpy as np
 from cyclopts import Parameter
 
-from fes_mj.budget.budget import error_budget, summary
+from fes_mj.budget.budget import budget_summary, error_budget
 from fes_mj.cli import tables
 from fes_mj.cli.answers import Answered, Turns, print_answer
 from fes_mj.cli.drive import DriveOptions
@@ -66,7 +66,7 @@ def _content(design: Answered, curves: bool) -> dict[str, Any]:
     result = design.result
     content = result.summary() | design.answer.summary() | {"design_toml": design_toml(result.first.design)}
     if isinstance(result, LegTurns):
-        content |= summary(error_budget(*result.turns))
+        content |= budget_summary(error_budget(*result.turns))
     content["friction_loss_W"] = design.loss.power if design.loss else 0.0
     return content | JointForces(result.first).summary() | (_curves(result, 360) if curves else {})
 

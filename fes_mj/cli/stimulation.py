@@ -31,7 +31,7 @@ from fes_mj.linkage.turning import CRANK_ZERO
 from fes_mj.muscles.rules import BEST
 from fes_mj.muscles.setting import MISTIMED, Setting
 from fes_mj.muscles.settings import Settings
-from fes_mj.riding.stimulation import CORE, Window, stimulation as find_windows, summary, table_csv
+from fes_mj.riding.stimulation import CORE, Window, stimulation as find_windows, table_csv, windows_summary
 
 _SLOWEST, _STEP, _APART = 30, 10, 5  # rpm: of the cadences below the main one, by which a start passes
 
@@ -81,7 +81,7 @@ def stimulation(
         result, content, tables, table = (settings,), settings.summary, partial(_print, settings), settings.table_csv
     else:
         result = loaded, find_windows(loaded, legs)
-        content, tables = partial(summary, *result), partial(_print_windows, *result)
+        content, tables = partial(windows_summary, *result), partial(_print_windows, *result)
         table = partial(table_csv, *result)
     if pages:
         from fes_mj.viewing.charts import write_figure

@@ -8,7 +8,7 @@ from rich.text import Text
 
 from fes_mj.common.arrays import ComplexArray
 from fes_mj.common.checks import Check
-from fes_mj.common.console import conclude, number, print_table, say, verdict
+from fes_mj.common.console import check_word, conclude, number, print_table, say
 from fes_mj.common.units import RPM
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.turning import CRANK_ZERO
@@ -128,11 +128,11 @@ def print_notes(result: DrivenTurn, of: str = "") -> None:
 
 def print_checks(title: str, checks: Sequence[Check]) -> None:
     """Print name, value, limit and verdict of checks; nothing is green where one fails."""
-    good = verdict(True) if all(check.ok for check in checks) else "ok"
+    good = check_word(True) if all(check.ok for check in checks) else "ok"
     rows: list[tuple[str | Text, ...]] = []
     for check in checks:
         value, limit = (number(size, check.unit) for size in (check.value, check.limit))
-        rows.append((check.name, value, limit, good if check.ok else verdict(False)))
+        rows.append((check.name, value, limit, good if check.ok else check_word(False)))
     print_table(title, ("check", "value", "limit", "verdict"), rows)
 
 

@@ -85,6 +85,6 @@ def number(value: float, unit: str = "") -> str:
     return f"{value:.2g} {unit}".rstrip()
 
 
-def verdict(ok: bool, otherwise: str = "FAILED") -> Text:
+def check_word(ok: bool, otherwise: str = "FAILED") -> Text:
     """Whether a check holds, in colour."""
     return Text("ok", "green") if ok else Text(otherwise, BAD)

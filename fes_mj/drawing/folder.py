@@ -7,7 +7,7 @@ import numpy as np
 
 from fes_mj.common.writing import csv_text
 from fes_mj.drawing.mechanism import LINE
-from fes_mj.drawing.part import FIRST, draw_part, drawn, extent, notes
+from fes_mj.drawing.part import FIRST, draw_part, notes, on_paper, plate_extent
 from fes_mj.drawing.pen import Pen
 from fes_mj.drawing.sheet import pictures, sheet
 from fes_mj.drawing.solid import step_text
@@ -22,7 +22,7 @@ def links_csv(build: Build) -> str:
     rows = ["link,hole,x_m,y_m,hole_diameter_m,pin_diameter_m,layer,thickness_m"]
     for body, plate in build.plates.items():
         for joint, place, diameter in plate.holes:
-            at = drawn(place) / 1000
+            at = on_paper(place) / 1000
             numbers = (at.real, at.imag, diameter, build.pins[joint], build.stack.layers[body], plate.thickness)
             rows.append(",".join([body, joint, *(f"{round(number, 12) + 0.0:.9g}" for number in numbers)]))
     return "\n".join(rows) + "\n"
@@ -77,7 +77,7 @@ def contents(build: Build, solids: bool = False) -> dict[Path, str | bytes]:
 
 def link_drawing(build: Build, plate: Plate) -> Pen:
     """A link in full size, the notes below it."""
-    pen, low = Pen.new(), extent(plate)[0]
+    pen, low = Pen.new(), plate_extent(plate)[0]
     draw_part(pen, plate)
     for number, line in enumerate(notes(build, plate, "1:1"), 1):
         pen.text(line, low - 1j * (2 * FIRST + LINE * number))

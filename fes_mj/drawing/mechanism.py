@@ -111,11 +111,11 @@ def _pose(build: Build, place: int, layer: str) -> list[tuple[ComplexArray, str]
     lines = [(seen(bar.outline(*frame(bar.body))), "PHANTOM") for bar in thin]
     for body, plate in build.plates.items():
         origin, direction = frame(body)
-        lines.append((seen(origin + direction * rounded(plate)), layer))
+        lines.append((seen(origin + direction * plate_outline(plate)), layer))
     return lines
 
 
-def rounded(plate: Plate) -> ComplexArray:
+def plate_outline(plate: Plate) -> ComplexArray:
     """Points along a plate's outline in its body's frame, m."""
     arcs = [
         corner.centre + plate.margin * corner.before * np.exp(1j * np.linspace(0, corner.angle, 24))

@@ -15,14 +15,14 @@ _OVER = 3.0  # mm that centre lines stand out of a hole
 _SAME = 1e-3  # mm: no dimension is shorter
 
 
-def drawn(place: complex) -> complex:
+def on_paper(place: complex) -> complex:
     """A point of a body's frame, m, as it is drawn, mm: seen from the rider's right."""
     return 1000 * complex(place).conjugate()
 
 
-def extent(plate: Plate) -> tuple[complex, complex]:
+def plate_extent(plate: Plate) -> tuple[complex, complex]:
     """Lower left and upper right corner of a link as it is drawn in full size, without dimensions, mm."""
-    corners, margin = np.array([drawn(corner) for corner in plate.core]), 1000 * plate.margin * (1 + 1j)
+    corners, margin = np.array([on_paper(corner) for corner in plate.core]), 1000 * plate.margin * (1 + 1j)
     low, high = (complex(end(corners.real), end(corners.imag)) for end in (np.min, np.max))
     return low - margin, high + margin
 
@@ -32,11 +32,11 @@ def draw_part(pen: Pen, plate: Plate) -> None:
     points, bulges = [], []
     for corner in plate.corners[::-1]:  # seen from the other side they follow each other the other way round
         for normal, bulge in ((corner.after, math.tan(corner.angle / 4)), (corner.before, 0.0)):
-            points.append(drawn(corner.centre + plate.margin * normal))
+            points.append(on_paper(corner.centre + plate.margin * normal))
             bulges.append(bulge)
     pen.outline(points, bulges, "OUTLINE")
     for letter, hole in lettered(plate):
-        place, radius = drawn(hole.place), 500 * hole.diameter
+        place, radius = on_paper(hole.place), 500 * hole.diameter
         pen.circle(place, 2 * radius, "HOLES")
         pen.cross(place, pen.scale * radius + _OVER)
         pen.text(letter, place + (0.75 * radius + 0.8 / pen.scale) * (-1 + 1j), align="RIGHT")
@@ -50,8 +50,8 @@ def lettered(plate: Plate) -> Iterator[tuple[str, Hole]]:
 
 def _dimensions(pen: Pen, plate: Plate) -> None:
     """Distances of the holes in line on one side; of one that stands off them on the other side."""
-    low, high = extent(plate)
-    origin, *others = (drawn(hole.place) for hole in plate.holes)
+    low, high = plate_extent(plate)
+    origin, *others = (on_paper(hole.place) for hole in plate.holes)
     off = [place for place in others if abs(place.imag) > _SAME]
     chain = sorted([origin, *(place for place in others if place not in off)], key=lambda place: place.real)
     below = not off or off[0].imag > 0

@@ -9,7 +9,7 @@ import numpy as np
 from fes_mj.common.text import printable
 from fes_mj.common.units import RPM
 from fes_mj.drawing.mechanism import FIXED_POINTS, LINE, SCALES, Box, largest_scale, mechanism, ratio
-from fes_mj.drawing.part import FIRST, draw_part, extent, notes
+from fes_mj.drawing.part import FIRST, draw_part, notes, plate_extent
 from fes_mj.drawing.pen import TEXT_HEIGHT, Pen
 from fes_mj.linkage.clearance import CLEARANCE, Gap
 from fes_mj.linkage.plates import Plate
@@ -44,7 +44,7 @@ def _links(pen: Pen, build: Build, box: Box) -> None:
     scales = _scales(plates, box.size)
     spare = (box.size.imag - sum(map(_height, plates, scales))) / len(plates)
     for plate, scale in zip(plates, scales, strict=True):
-        low, high = extent(plate)
+        low, high = plate_extent(plate)
         below = _lines(pen, notes(build, plate, ratio(scale)), complex(box.left, top))
         corner = complex(box.left + DIMENSION_ROOM, below - DIMENSION_ROOM - scale * (high - low).imag)
         draw_part(pen.moved(corner - scale * low, scale), plate)
@@ -53,13 +53,13 @@ def _links(pen: Pen, build: Build, box: Box) -> None:
 
 def _height(plate: Plate, scale: float) -> float:
     """Of a link with its notes and dimensions, mm."""
-    low, high = extent(plate)
+    low, high = plate_extent(plate)
     return scale * float((high - low).imag) + 2 * DIMENSION_ROOM + LINE * (1 + len(plate.holes))
 
 
 def _scales(plates: Sequence[Plate], room: complex) -> list[float]:
     """The largest in which all links fit below each other: the tallest is made smaller as long as they do not."""
-    wide = (extent(plate)[1] - extent(plate)[0] for plate in plates)
+    wide = (plate_extent(plate)[1] - plate_extent(plate)[0] for plate in plates)
     scales = [largest_scale(size.real + 0j, room - 2 * DIMENSION_ROOM) for size in wide]
     while sum(map(_height, plates, scales)) > room.imag:
         heights = [*map(_height, plates, scales)]

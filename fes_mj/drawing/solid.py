@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from fes_mj.drawing.part import drawn
+from fes_mj.drawing.part import on_paper
 from fes_mj.linkage.plates import Plate
 
 # What Open CASCADE says of the moment: date, and how many bodies this process has written.
@@ -43,7 +43,7 @@ def solid(plate: Plate) -> Any:
     from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt, gp_Vec
 
     def point(place: complex) -> Any:
-        at = drawn(place)
+        at = on_paper(place)
         return gp_Pnt(at.real, at.imag, 0.0)
 
     arcs = [

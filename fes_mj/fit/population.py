@@ -10,7 +10,7 @@ from fes_mj.common.arrays import BoolArray, FloatArray
 from fes_mj.common.brief import Brief
 from fes_mj.common.errors import require_within
 from fes_mj.common.units import turns_per_second
-from fes_mj.fit.search import best_seats, scores
+from fes_mj.fit.search import best_seats, seat_scores
 from fes_mj.fit.seats import OUTSIDE_EQUAL, SEAT_LIMITS, SeatLimits, Seats, losses, outside_range
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.riders import PEOPLE_PER_SEX, Legs, Population, populations
@@ -184,7 +184,7 @@ def _offered(people: Legs, thigh: FloatArray, shank: FloatArray, seats: FloatArr
 
 def _chosen(design: Design, people: Legs, offered: FloatArray, table: WorkTable) -> Seats:
     """The best of the seats that people try, the first of which is as drawn; in none do they get farther outside."""
-    known = scores(design, np.column_stack([people.thigh, people.shank]), offered, table)
+    known = seat_scores(design, np.column_stack([people.thigh, people.shank]), offered, table)
     more = known.outside[:, :1] - known.outside.min(axis=1, keepdims=True)
     best = losses(known, known, outside_slack=np.minimum(more, OUTSIDE_EQUAL)).argmin(axis=1)
     return Seats(*offered[np.arange(len(best)), best].T)

@@ -44,7 +44,7 @@ def best_seats(
         Shape (6, riders, seats).
         """
         settable = np.clip(np.round(seats / _STEP) * _STEP, low, high)
-        return np.concatenate([np.moveaxis(settable, -1, 0), scores(design, legs, settable, table)])
+        return np.concatenate([np.moveaxis(settable, -1, 0), seat_scores(design, legs, settable, table)])
 
     def loss(seats: FloatArray, aim: int = 3, slack: float = POWER_EQUAL) -> FloatArray:
         """Of these beside all that were tried."""
@@ -78,7 +78,7 @@ def _mutants(population: FloatArray, loss: FloatArray, random: np.random.Generat
     return np.where(random.random(population.shape) < 0.1, population, mutant)
 
 
-def scores(design: Design, legs: FloatArray, seats: FloatArray, table: WorkTable) -> Scores:
+def seat_scores(design: Design, legs: FloatArray, seats: FloatArray, table: WorkTable) -> Scores:
     """Of each rider's seats, shape (riders, seats, 3); legs: thigh and shank, shape (riders, 2)."""
     count, parts = seats.shape[1], []
     size = max(1, _AT_ONCE // count)

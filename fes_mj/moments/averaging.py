@@ -8,7 +8,7 @@ import numpy as np
 from fes_mj.common.arrays import BoolArray, FloatArray
 from fes_mj.linkage.kinematics import solve, uniform_turn
 from fes_mj.linkage.variables import component, replaced
-from fes_mj.moments.fourier import fit
+from fes_mj.moments.fourier import fit_fourier
 from fes_mj.moments.reference_tricycle import ReferenceTricycle
 from fes_mj.moments.turn import Turn
 from fes_mj.moments.uncertainty import power_weights
@@ -46,9 +46,9 @@ def without_spikes(turn: Turn) -> tuple[Turn, int]:
     return cleaned, int(alone.sum())
 
 
-def coefficients(turn: Turn) -> FloatArray:
+def turn_coefficients(turn: Turn) -> FloatArray:
     """Of the Fourier series of a turn's moments, knee's then hip's, N m, shape (98,)."""
-    return np.ravel(fit(turn.crank_angle, np.column_stack([turn.knee, turn.hip])).T)
+    return np.ravel(fit_fourier(turn.crank_angle, np.column_stack([turn.knee, turn.hip])).T)
 
 
 def mean_of(rows: FloatArray, sources: Sequence[tuple[str, str]], weights: FloatArray) -> tuple[FloatArray, FloatArray]:

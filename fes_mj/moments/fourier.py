@@ -29,7 +29,7 @@ def fourier(crank_angle: Any) -> FloatArray:
     return np.concatenate([np.ones((*angle.shape, 1)), turned.real, turned.imag], axis=-1)
 
 
-def fit(angle: FloatArray, values: FloatArray) -> FloatArray:
+def fit_fourier(angle: FloatArray, values: FloatArray) -> FloatArray:
     """Coefficients, shape (TERMS, curves), of the smooth periodic curves through samples, or among noisy dense ones.
 
     angle: rad, shape (n,), in any order and by any whole turns. values: shape (n, curves). Least squares in which all

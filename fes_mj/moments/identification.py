@@ -24,7 +24,7 @@ class Identified(NamedTuple):
     declared: float
 
 
-def identify(turns: Sequence[Turn], measured_on: ReferenceTricycle) -> list[Identified]:
+def identify_tricycle(turns: Sequence[Turn], measured_on: ReferenceTricycle) -> list[Identified]:
     """Length of R1, R2 and the seat's angle by least squares from the angles of hip and knee in every turn.
 
     With thigh, shank and R6 as declared the two angles say where the pedal is: on a circle about the end of R1 with

@@ -11,7 +11,7 @@ from fes_mj.common.brief import Brief
 from fes_mj.common.errors import InputError
 from fes_mj.linkage.joints import PerJoint
 from fes_mj.linkage.kinematics import uniform_turn
-from fes_mj.moments.fourier import fit, fourier
+from fes_mj.moments.fourier import fit_fourier, fourier
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE, ReferenceTricycle
 
 RIDER_GROUPS = ("p1p2", "p1p3")
@@ -59,8 +59,8 @@ class JointMoments(Brief):
 
     @cached_property
     def coefficients(self) -> PerJoint[FloatArray]:
-        """Of the Fourier series of each moment's smooth curve through the samples (fourier.fit), N m, shape (49,)."""
-        fitted = fit(self.crank_angle, np.column_stack([self.knee, self.hip]))
+        """Of the Fourier series of each moment's smooth curve through the samples (fit_fourier), N m, shape (49,)."""
+        fitted = fit_fourier(self.crank_angle, np.column_stack([self.knee, self.hip]))
         return PerJoint(*np.ascontiguousarray(fitted.T))
 
     @cached_property

@@ -17,7 +17,7 @@ from fes_mj.moments.crank_angle import TimedTurn, timed_turns
 from fes_mj.moments.measurement_file import ANGLE_UNITS, Description
 from fes_mj.moments.reference_tricycle import ReferenceTricycle
 from fes_mj.moments.tables import OPENSIM, TextTable, load_table
-from fes_mj.moments.trial import by_crank, in_order, times
+from fes_mj.moments.trial import by_crank, in_order, timed_rows
 from fes_mj.moments.turn import Turn
 
 WHAT = "joint moments"
@@ -92,7 +92,7 @@ def _by_crank(description: Description, recording: Recording, table: TextTable, 
     used = _value_columns(description)
     timed = table.path.suffix.lower() in OPENSIM or description.columns["time"] or table.time_column
     if timed:  # a series over time
-        table, time = times(table, description.columns["time"], description.time_unit, (crank, *used))
+        table, time = timed_rows(table, description.columns["time"], description.time_unit, (crank, *used))
     given = bounded(table, crank, LARGEST_ANGLE)
     angle = description.sense * ANGLE_UNITS[unit] * given
     if recording.crank_angle is None:
@@ -118,7 +118,7 @@ def _by_knee(
     """Turns of a trial, from one dead centre of the knee to the next, at the crank angles that the knee tells."""
     column = description.columns["knee_angle"]
     motion = load_table(kinematics, "kinematics", (column,))
-    motion, moved = times(motion, description.columns["time"], description.time_unit, (column,))
+    motion, moved = timed_rows(motion, description.columns["time"], description.time_unit, (column,))
     joint_angle = _joint_angles(description, recording, motion)
     timed = timed_turns(moved, joint_angle["knee"], description.measured_on)
     if not timed:
@@ -126,7 +126,7 @@ def _by_knee(
             f"{kinematics}: {column} is at its most bent fewer than 2 times; a whole turn lies between two such dead "
             "centres"
         )
-    table, time = times(table, description.columns["time"], description.time_unit, _value_columns(description))
+    table, time = timed_rows(table, description.columns["time"], description.time_unit, _value_columns(description))
     values = _values(description, table)
     if time[0] > timed[-1].end or time[-1] < timed[0].start:
         raise InputError(

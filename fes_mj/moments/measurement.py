@@ -12,7 +12,14 @@ from fes_mj.common.text import printable
 from fes_mj.common.units import RPM, turns_per_second
 from fes_mj.linkage.joints import PerJoint
 from fes_mj.linkage.variables import VARIABLES
-from fes_mj.moments.averaging import coefficients, declared_power_sd, mean_of, weights_on, with_power_sd, without_spikes
+from fes_mj.moments.averaging import (
+    declared_power_sd,
+    mean_of,
+    turn_coefficients,
+    weights_on,
+    with_power_sd,
+    without_spikes,
+)
 from fes_mj.moments.comparison import Comparison
 from fes_mj.moments.conventions import Convention
 from fes_mj.moments.files import CURVE_DEGREES, moments_of
@@ -117,7 +124,7 @@ def _measurement(path: Path, recording: Recording) -> Measurement:
     declared_sd = None
     name, known = printable(path.stem), recording.cadence_known or cadence is not None
     if len(turns) > 1:
-        rows = np.stack([coefficients(turn) for turn in turns])
+        rows = np.stack([turn_coefficients(turn) for turn in turns])
         weights = weights_on(measured_on)
         mean, covariance = mean_of(rows, [turn.source for turn in turns], weights)
         declared_sd = declared_power_sd(mean, measured_on, cadence is not None)

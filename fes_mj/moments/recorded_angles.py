@@ -10,7 +10,7 @@ from fes_mj.linkage.joints import JOINTS
 from fes_mj.linkage.kinematics import solve
 from fes_mj.moments.comparison import Comparison
 from fes_mj.moments.conventions import LARGEST_TILT, Convention
-from fes_mj.moments.fourier import fit, fourier
+from fes_mj.moments.fourier import fit_fourier, fourier
 from fes_mj.moments.measured_turns import CountedAngle
 from fes_mj.moments.reference_tricycle import ReferenceTricycle
 from fes_mj.moments.turn import Turn
@@ -48,7 +48,7 @@ def recorded_curve(turns: Sequence[Turn], joint: str) -> FloatArray | None:
     if not parts:
         return None
     angle, value = (np.concatenate(column) for column in zip(*parts, strict=True))
-    return np.asarray(np.degrees(fourier(_TURN) @ fit(angle, value[:, None])[:, 0]))
+    return np.asarray(np.degrees(fourier(_TURN) @ fit_fourier(angle, value[:, None])[:, 0]))
 
 
 def curves(turns: Sequence[Turn], tricycle: ReferenceTricycle, crank_recorded: bool) -> Iterator[Comparison]:

@@ -13,7 +13,7 @@ TIME_UNITS = {"s": 1.0, "ms": 1e-3}  # s
 _SAME = 0.01  # of a column's range: values at one time that differ by less are one sample printed twice
 
 
-def times(table: TextTable, column: str, unit: str, columns: Collection[str]) -> tuple[TextTable, FloatArray]:
+def timed_rows(table: TextTable, column: str, unit: str, columns: Collection[str]) -> tuple[TextTable, FloatArray]:
     """The rows of a trial and their times, s; a row printed twice, as OpenSim does, counts once.
 
     column, unit: of the times, "" for what the header says. columns: those that are used, by which rows are the same.

@@ -19,7 +19,7 @@ def trapezium(since_on: Any, width: Any, ramp: Any) -> FloatArray:
     return np.asarray(np.clip(np.minimum(passed, width - passed) / ramp, 0.0, 1.0))
 
 
-def answer(
+def periodic_activation(
     stimulation: FloatArray, turn: Any, rise: Any, fall: Any, start: Any = 0.0, step: FloatArray | None = None
 ) -> FloatArray:
     """Activation over a turn under a stimulation that repeats, both over crank angles, the last axis.

@@ -13,7 +13,7 @@ from fes_mj.common.arrays import FloatArray
 from fes_mj.linkage import kinematics
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.joints import JOINTS, PerJoint
-from fes_mj.muscles.activation import answer, trapezium
+from fes_mj.muscles.activation import periodic_activation, trapezium
 from fes_mj.muscles.anatomy import MUSCLE_GROUPS
 from fes_mj.muscles.prior import ramp
 from fes_mj.muscles.riders import Riders
@@ -39,7 +39,7 @@ class JointLed:
     def of(cls, riders: Riders, design: Design, cadence: float, crank_angle: FloatArray) -> "JointLed":
         """At crank angles of a turn, rad, shape (angles,), and where joints turn round; cadence: rad/s."""
         late = cadence * riders["delay_s"][:, 0]
-        turned = (reversals(design, crank_angle) + late) % (2 * np.pi)
+        turned = (around_reversals(design, crank_angle) + late) % (2 * np.pi)
         nodes = np.sort(np.concatenate([np.broadcast_to(crank_angle, (len(riders), crank_angle.size)), turned], axis=1))
         trial, motion = riders.measured_on, kinematics.solve(design, nodes - late)
         angle, rate = motion.joint_angle, motion.joint_rate
@@ -52,7 +52,9 @@ class JointLed:
         """At the nodes, shape (groups, members, nodes); start: at the first, as well as it is known."""
         turn, rise, fall = 2 * np.pi / self.cadence, self.riders["rise_s"][:, 0, 0], self.riders.fall[:, 0, 0]
         step = np.diff(self.crank_angle, append=self.crank_angle[:, :1] + 2 * np.pi) / (2 * np.pi)
-        return answer(self.stimulation, turn, rise, fall, start, np.broadcast_to(step, self.stimulation.shape))
+        return periodic_activation(
+            self.stimulation, turn, rise, fall, start, np.broadcast_to(step, self.stimulation.shape)
+        )
 
     def activation_at(self, crank_angle: FloatArray) -> FloatArray:
         """At angles that are among the nodes, shape (groups, members, angles)."""
@@ -60,7 +62,7 @@ class JointLed:
         return np.take_along_axis(self.activation(), place[None], axis=-1)
 
 
-def reversals(design: Design, crank_angle: FloatArray) -> FloatArray:
+def around_reversals(design: Design, crank_angle: FloatArray) -> FloatArray:
     """Crank angles just before and just after each joint turns round, rad, shape (2 * reversals,).
 
     crank_angle: rad, ascending within a turn, between which a joint turns round no more than once.

@@ -12,7 +12,7 @@ import numpy as np
 from fes_mj.common.arrays import FloatArray
 from fes_mj.muscles.anatomy import MUSCLE_GROUPS
 from fes_mj.muscles.identification import STRENGTH_DRAWS, STRENGTHS, Candidates, Measured
-from fes_mj.muscles.prior import priors, quantile, score
+from fes_mj.muscles.prior import normal_score, priors, quantile
 from fes_mj.muscles.riders import Riders
 
 _STEP = 2.38  # of a step per root of the dimensions, in standard deviations (Roberts, Gelman and Gilks 1997)
@@ -27,7 +27,7 @@ def moved(
     advance: Callable[[int], None] = lambda _: None,
 ) -> Riders:
     """The riders after so many steps; advance: called with the number of riders that were just looked at."""
-    scores = np.stack([score(name, riders.values[name]) for name in _QUANTITIES], axis=1)
+    scores = np.stack([normal_score(name, riders.values[name]) for name in _QUANTITIES], axis=1)
     here, density = _looked_at(riders, scores, measured, random)
     for _ in range(steps):
         # of where the chains are: it is wider than the posterior at first, and has its shape in the end

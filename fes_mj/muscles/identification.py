@@ -61,7 +61,7 @@ class Measured(NamedTuple):
         return Residual(rows @ residual.loss, rows @ residual.covariance @ rows.T)
 
 
-def coefficients(moment: PerJoint[FloatArray]) -> FloatArray:
+def moment_coefficients(moment: PerJoint[FloatArray]) -> FloatArray:
     """Fourier coefficients (moments.fourier) of moments over uniform angles, knee's then hip's: shape (..., 98)."""
 
     def of_joint(curve: FloatArray) -> FloatArray:
@@ -140,10 +140,10 @@ def _seen(riders: Riders, measured: Measured) -> tuple[FloatArray, FloatArray]:
     stimulation = Windows(on, width).at(_TURN - cadence * riders["delay_s"], cadence * ramp())
     activation = responded(stimulation, riders, cadence)
     moment = pull(unit, motion, reference.cadence).moment.map(lambda moment: (activation * moment)[:, :, 0])
-    by_group = np.einsum("rf,gmf->mrg", weights, coefficients(moment))
+    by_group = np.einsum("rf,gmf->mrg", weights, moment_coefficients(moment))
     counts = (measured.group[:, None] == WHOLE) | (measured.group[:, None] == np.arange(len(MUSCLE_GROUPS)))
     passive = passive_moments(riders.flexion(motion))
-    return by_group * counts, coefficients(passive)[:, 0] @ weights.T * (measured.group == WHOLE)
+    return by_group * counts, moment_coefficients(passive)[:, 0] @ weights.T * (measured.group == WHOLE)
 
 
 def _log_density(apart: FloatArray, covariance: FloatArray) -> FloatArray:
@@ -152,7 +152,7 @@ def _log_density(apart: FloatArray, covariance: FloatArray) -> FloatArray:
     return np.asarray(-(np.sum(apart * solved, axis=-1) + np.linalg.slogdet(covariance)[1]) / 2)
 
 
-def identify(
+def identify_riders(
     measured: Measured,
     random: np.random.Generator,
     count: int,

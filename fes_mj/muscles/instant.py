@@ -121,7 +121,7 @@ def activated(
 ) -> float:
     """Activation after a step; before, after: stimulation. rising, falling: `weights` of the two time constants.
 
-    Always as the constant says that leaves it the higher (activation.answer).
+    Always as the constant says that leaves it the higher (periodic_activation).
     """
     up = rising[0] * activation + rising[1] * before + rising[2] * after
     down = falling[0] * activation + falling[1] * before + falling[2] * after

@@ -7,6 +7,7 @@ import numpy as np
 from fes_mj.common.arrays import FloatArray
 from fes_mj.muscles.riders import Riders
 
+MEMBERS = 200  # riders that a posterior is kept as
 _LEAST_EFFECTIVE = 100  # riders by whose spread the next ones are proposed
 
 

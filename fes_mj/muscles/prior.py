@@ -25,7 +25,7 @@ def ramp() -> float:
     return read_toml(_FILE, "priors of muscles").section(_STIMULATOR).number("ramp_s")
 
 
-def drawn(count: int, random: "np.random.Generator") -> dict[str, FloatArray]:
+def prior_draws(count: int, random: "np.random.Generator") -> dict[str, FloatArray]:
     """So many riders of every quantity, shape (count,), independent of each other."""
     return {name: quantile(name, random.standard_normal(count)) for name in priors()}
 
@@ -46,7 +46,7 @@ def quantile(name: str, scores: FloatArray) -> FloatArray:
     return np.asarray(np.exp(values) if "log-even" in row else values)
 
 
-def score(name: str, values: FloatArray) -> FloatArray:
+def normal_score(name: str, values: FloatArray) -> FloatArray:
     """The inverse of `quantile`; of one of two values, the middle of its half."""
     from scipy.special import ndtr, ndtri
 

@@ -6,9 +6,9 @@ import numpy as np
 
 from fes_mj.common.arrays import BoolArray, FloatArray
 from fes_mj.linkage.design import Design
-from fes_mj.muscles.identification import Candidates, Measured, identify
+from fes_mj.muscles.identification import Candidates, Measured, identify_riders
 from fes_mj.muscles.power import best_turn, muscle_turn
-from fes_mj.muscles.prior import drawn
+from fes_mj.muscles.prior import prior_draws
 from fes_mj.muscles.riders import Riders
 from fes_mj.muscles.timing import DUTY
 
@@ -43,10 +43,12 @@ def held(
     measured: what is known of each, whose values are replaced by what the rider would give; candidates: see identify.
     """
     random, ends = np.random.default_rng(seed), ((1 - share) / 2, (1 + share) / 2)
-    truth = Candidates.of(Riders("truth", drawn(riders, random), np.zeros(riders)), measured)
+    truth = Candidates.of(Riders("truth", prior_draws(riders, random), np.zeros(riders)), measured)
     result = np.zeros((riders, len(designs)), bool)
     for row in range(riders):
-        members = identify(measured._replace(values=truth.simulated(row, random)), random, candidates).members(100)
+        members = identify_riders(measured._replace(values=truth.simulated(row, random)), random, candidates).members(
+            100
+        )
         low, high = np.quantile(gains(members, designs, base), ends, axis=1)
         true = gains(members, designs, base, known=truth.riders.taken([row]))[:, 0]
         result[row] = (low <= true) & (true <= high)

@@ -11,7 +11,7 @@ import numpy as np
 
 from fes_mj.common.arrays import ComplexArray, FloatArray
 from fes_mj.common.errors import InputError
-from fes_mj.muscles.activation import answer, trapezium
+from fes_mj.muscles.activation import periodic_activation, trapezium
 from fes_mj.muscles.anatomy import MUSCLE_GROUPS
 from fes_mj.muscles.prior import ramp
 from fes_mj.muscles.riders import Riders
@@ -69,7 +69,7 @@ def activation(windows: Windows, riders: Riders, cadence: Any) -> FloatArray:
 def responded(stimulation: FloatArray, riders: Riders, cadence: FloatArray) -> FloatArray:
     """What muscles make of a stimulation, already delayed, shape (..., members, designs, angles)."""
     times = (2 * np.pi / cadence[:, 0], riders["rise_s"][..., 0], riders.fall[..., 0])
-    return answer(stimulation, *times)
+    return periodic_activation(stimulation, *times)
 
 
 def is_duty(share: float) -> bool:

@@ -16,7 +16,7 @@ from fes_mj.linkage.kinematics import Motion
 from fes_mj.linkage.legs import Leg
 from fes_mj.linkage.torque_source import LegControl
 from fes_mj.moments.torque_map import scalar_source
-from fes_mj.muscles.activation import answer
+from fes_mj.muscles.activation import periodic_activation
 from fes_mj.muscles.anatomy import MUSCLE_GROUPS
 from fes_mj.muscles.by_joint import LEADING, TURNED, JointLed
 from fes_mj.muscles.instant import LegMuscles, Stimulus, joint_moments, stimulation
@@ -105,7 +105,7 @@ class MuscleTorque(Brief):
         if self.stimulated.windows is None:
             return self._led.activation(start[:, None])[:, 0]
         times = 2 * np.pi / self.cadence, known["rise_s"].item(), known.fall.item()
-        return answer(self._asked[1], *times, start)
+        return periodic_activation(self._asked[1], *times, start)
 
     @property
     def stimulus(self) -> Stimulus:

@@ -12,8 +12,9 @@ from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.muscles.anatomy import anatomy
 from fes_mj.muscles.chains import moved
 from fes_mj.muscles.geometry import Flexion
-from fes_mj.muscles.identification import DOUBTS, STRENGTHS, WHOLE, Candidates, Measured, identify
-from fes_mj.muscles.prior import drawn, priors
+from fes_mj.muscles.identification import DOUBTS, STRENGTHS, WHOLE, Candidates, Measured, identify_riders
+from fes_mj.muscles.posterior import MEMBERS
+from fes_mj.muscles.prior import prior_draws, priors
 from fes_mj.muscles.riders import Riders
 
 ORDERS = 4  # harmonics that are fitted; in finer ones the largest residual has less than 0.1 N m to make good a model
@@ -21,7 +22,6 @@ ERROR = 0.25  # N m, of every coefficient, besides the scatter of the turns: of 
 LEAST_EXPLAINED = 0.8  # of the variance of the moments
 IDENTIFIED = 0.9  # standard deviation per the prior's, above which nothing was learned of a quantity
 ENDS = (0.05, 0.5, 0.95)
-MEMBERS = 200  # riders that a posterior is kept as
 
 
 class Quantity(NamedTuple):
@@ -40,7 +40,7 @@ class Quantity(NamedTuple):
 
 def quantities(riders: Riders) -> list[Quantity]:
     """Prior beside posterior of everything that is not known of riders."""
-    before = drawn(20_000, np.random.default_rng(2))
+    before = prior_draws(20_000, np.random.default_rng(2))
 
     def quantity(name: str) -> Quantity:
         prior, posterior = ([float(end) for end in np.quantile(of[name], ENDS)] for of in (before, riders.values))
@@ -101,7 +101,7 @@ def fit_muscles(
     LEAST_EXPLAINED.
     """
     measured, random = measured_moments(moments), np.random.default_rng(seed)
-    found = identify(measured, random, candidates, moments.name, advance).flattened().members(MEMBERS)
+    found = identify_riders(measured, random, candidates, moments.name, advance).flattened().members(MEMBERS)
     riders = moved(found, measured, random, steps, advance)
     share = explained_share(riders, moments)
     if share < LEAST_EXPLAINED:

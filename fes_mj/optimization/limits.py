@@ -238,7 +238,7 @@ def motion_values(
     return np.column_stack(columns)
 
 
-def margins(constraints: tuple[Constraint, ...], values: FloatArray) -> FloatArray:
+def constraint_margins(constraints: tuple[Constraint, ...], values: FloatArray) -> FloatArray:
     """How far inside their limits the values are, shape (n, constraints)."""
     return np.column_stack([c.margin(values[:, column]) for column, c in enumerate(constraints)])
 

@@ -26,11 +26,11 @@ from fes_mj.optimization.limits import (
     VARIED,
     Constraint,
     Limits,
+    constraint_margins,
     depth_inside,
     length_constraints,
     length_values,
     load_limits,
-    margins,
     motion_constraints,
     motion_values,
 )
@@ -66,7 +66,7 @@ class Evaluation:
     @cached_property
     def margins(self) -> FloatArray:
         """How far inside their limits the values are."""
-        return margins(self.constraints, self.values)
+        return constraint_margins(self.constraints, self.values)
 
     @property
     def feasible(self) -> BoolArray:
@@ -179,7 +179,7 @@ class Problem:
         """
         design, free = self.batch(x), x[:, : len(self.search) - 1]
         lengths = length_values(design, x[:, :LENGTH_COUNT], self.limits.polygon)
-        sound = np.all(margins(self.geometry, lengths) >= 0, axis=1)
+        sound = np.all(constraint_margins(self.geometry, lengths) >= 0, axis=1)
         motion = np.full((len(x), len(self.motion)), np.nan)
         power = np.full((len(x), self.table.sets), np.nan)
         chosen = free.shape == x.shape
@@ -198,7 +198,7 @@ class Problem:
             geared = ridden.with_linkage(gear_ratio=ratios[:, None])
             outside = self.drive.outside(turn) if self.limits.build else None
             at_once = motion_values(geared, turn, speeds, self.drive.inside(turn), outside)
-            within = np.all(margins(self.motion[: at_once.shape[1]], at_once) >= 0, axis=1)
+            within = np.all(constraint_margins(self.motion[: at_once.shape[1]], at_once) >= 0, axis=1)
             power[sound] = self.people.power(self.drive.power(geared, turn, per_s * ratios, within))
             hopeful = within & np.repeat((self.drive.worth(power) >= to_beat)[sound], riders)
             motion[sound] = self._worst(np.column_stack([at_once, *self._in_time(geared, hopeful)]))

@@ -5,9 +5,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fes_mj.budget.budget import ErrorBudget, Share, Spread, error_budget, shares, together, unknowns
+from fes_mj.budget.budget import ErrorBudget, Share, Spread, error_budget, sobol_shares, together, unknowns
 from fes_mj.budget.power import UncertainPower
-from fes_mj.budget.unknowns import priors
+from fes_mj.budget.unknowns import budget_priors
 from fes_mj.common.arrays import FloatArray
 from fes_mj.common.console import track
 from fes_mj.linkage.design_file import SIX_BARS
@@ -19,7 +19,7 @@ from fes_mj.statics.turn import QuasiStatic
 DRAWS = 1000  # of each unknown: a standard deviation is known to 2 % of itself
 TIMES = 8  # each comes up in the rows of all together: a probability of one half is known to 0.6 %
 GAINS = (1.25, 1.5, 2.0)  # power per the TRT's
-UNKNOWNS = [*priors()]  # the last draws nothing
+UNKNOWNS = [*budget_priors()]  # the last draws nothing
 
 
 class Drawn(NamedTuple):
@@ -40,14 +40,14 @@ def draw_all(static: dict[tuple[str, str], QuasiStatic], silent: bool) -> Budget
         budget, uncertain = error_budget(static[key], draws=DRAWS), UncertainPower(static[key], DRAWS)
         assert budget is not None
         powers = uncertain.at(together(unknowns(), DRAWS, TIMES))
-        budgets[key] = Drawn(budget, powers, shares(uncertain.at, unknowns(), DRAWS))
+        budgets[key] = Drawn(budget, powers, sobol_shares(uncertain.at, unknowns(), DRAWS))
     return budgets
 
 
 @table("priors")
 def prior_table() -> Rows:
     """What is drawn, and where it comes from."""
-    return [(name, row["prior"], row["source"]) for name, row in priors().items()]
+    return [(name, row["prior"], row["source"]) for name, row in budget_priors().items()]
 
 
 @table("contributions", unknown=UNKNOWNS)

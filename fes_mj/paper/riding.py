@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from fes_mj.budget.unknowns import MASSES, priors, realisations
+from fes_mj.budget.unknowns import MASSES, budget_priors, realisations
 from fes_mj.common.console import track
 from fes_mj.common.errors import InputError, require_extra
 from fes_mj.common.units import KMH, RPM
@@ -88,7 +88,7 @@ def drawn_rides(ride: Ride, muscles: Muscles, count: int = DRAWS) -> list[Ride]:
     drawn = realisations(design, load_moments(group), count)
     values = drawn.dimensions | drawn.legs
     members = np.linspace(0, len(muscles.riders) - 1, count).astype(int)  # which are independent of each other
-    heavier = np.exp(priors()[MASSES]["log_sd"] * np.random.default_rng(SEED).standard_normal(count))
+    heavier = np.exp(budget_priors()[MASSES]["log_sd"] * np.random.default_rng(SEED).standard_normal(count))
     rides = []
     for row, (member, factor) in enumerate(zip(members, heavier, strict=True)):
         other = replaced(design, {name: float(column[row]) for name, column in values.items()})

@@ -86,7 +86,7 @@ def system(ride: Ride, fineness: int) -> System:
 
 
 @machine_code
-def moved(state: State, rates: State, time: float) -> State:
+def state_after(state: State, rates: State, time: float) -> State:
     """A state, and so much time along its rates."""
     old, new = state.activation, rates.activation
     return State(
@@ -170,7 +170,7 @@ def rates_of(system: System, state: State, mode: Mode) -> tuple[State, float]:
 
 
 @machine_code
-def margins(system: System, state: State, mode: Mode, push: float) -> tuple[float, float]:
+def mode_margins(system: System, state: State, mode: Mode, push: float) -> tuple[float, float]:
     """What is left of a mode before the freewheel opens or closes (N m, m/s), and before the tricycle comes to rest or
     is moved (m/s, N): one of them is below zero once the mode is over.
     """
@@ -186,7 +186,7 @@ def margins(system: System, state: State, mode: Mode, push: float) -> tuple[floa
 
 
 @machine_code
-def driven(force: float, friction: float) -> int:
+def breakaway_direction(force: float, friction: float) -> int:
     """Direction in which a force (N) moves what dry friction would hold; 0 if it holds."""
     return 1 if force > friction else -1 if force < -friction else 0
 
@@ -195,7 +195,7 @@ def driven(force: float, friction: float) -> int:
 def mode_of(system: System, state: State) -> Mode:
     """The mode in which a state goes on."""
     fixed, travel, load = system.fixed, system.travel, system.load
-    direction = driven(state.speed, 0.0)
+    direction = breakaway_direction(state.speed, 0.0)
     together = fixed or state.crank_speed * travel >= state.speed - SPEED_ROUNDING
     if together and direction != 0:
         _, push = rates_of(system, state, Mode(True, direction))
@@ -203,10 +203,10 @@ def mode_of(system: System, state: State) -> Mode:
     if together:  # and stands
         _, push = rates_of(system, state, Mode(True, 0))
         if fixed or push >= 0:
-            return Mode(True, driven(push / travel - load.climb, load.rolling))
+            return Mode(True, breakaway_direction(push / travel - load.climb, load.rolling))
     if direction == 0:
         _, force = rates_of(system, state, Mode(False, 0))
-        direction = driven(force, load.rolling)
+        direction = breakaway_direction(force, load.rolling)
         if together and direction < 0:  # it rolls back, perhaps faster than the crank falls
             rates, _ = rates_of(system, state, Mode(False, direction))
             if rates.crank_speed * travel > rates.speed:

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 from fes_mj.common.machine_code import inlined_machine_code, kept_machine_code, machine_code, sources
 from fes_mj.linkage.inertia import CrankInertia
-from fes_mj.riding.equation import Mode, State, System, margins, mode_of, moved, rates_of
+from fes_mj.riding.equation import Mode, State, System, mode_margins, mode_of, rates_of, state_after
 from fes_mj.riding.leg_table import LegTable
 from fes_mj.riding.lookup import place
 from fes_mj.riding.muscle_table import MuscleTable
@@ -21,31 +21,31 @@ SAMPLE = ("time", "coasting", *State._fields[:-1])
 
 
 class Step(NamedTuple):
-    """A step's end, the rates there, and margins in its middle and at its end. error: of the crank's speed, per itself,
-    where rates at the end instead of the fourth would give it at third order.
+    """A step's end, the rates there, and `mode_margins` in its middle and at its end. error: of the crank's speed, per
+    itself, where rates at the end instead of the fourth would give it at third order.
     """
 
     end: State
     rates: State
-    middle: tuple[float, float]
-    left: tuple[float, float]
+    middle_margins: tuple[float, float]
+    end_margins: tuple[float, float]
     error: float
 
 
 @inlined_machine_code
 def stepped(system: System, start: State, first: State, mode: Mode, time: float) -> Step:
     """A step of Runge and Kutta from a state with these rates."""
-    second, _ = rates_of(system, moved(start, first, time / 2), mode)
-    halfway = moved(start, second, time / 2)
+    second, _ = rates_of(system, state_after(start, first, time / 2), mode)
+    halfway = state_after(start, second, time / 2)
     third, push = rates_of(system, halfway, mode)
-    middle = margins(system, halfway, mode, push)
-    fourth, _ = rates_of(system, moved(start, third, time), mode)
-    two_thirds = moved(moved(moved(start, first, time / 6), second, time / 3), third, time / 3)
-    end = moved(two_thirds, fourth, time / 6)
+    middle = mode_margins(system, halfway, mode, push)
+    fourth, _ = rates_of(system, state_after(start, third, time), mode)
+    two_thirds = state_after(state_after(state_after(start, first, time / 6), second, time / 3), third, time / 3)
+    end = state_after(two_thirds, fourth, time / 6)
     rates, push = rates_of(system, end, mode)
     error = time / 6 * abs(fourth.crank_speed - rates.crank_speed)
     scale = abs(start.crank_speed) + time * abs(first.crank_speed)
-    return Step(end, rates, middle, margins(system, end, mode, push), error / max(scale, STANDING))
+    return Step(end, rates, middle, mode_margins(system, end, mode, push), error / max(scale, STANDING))
 
 
 @machine_code
@@ -65,11 +65,11 @@ def fitting(excess: float) -> float:
 
 @inlined_machine_code
 def tried(
-    system: System, start: State, first: State, mode: Mode, begun: tuple[float, float], longest: float, trusted: float
+    system: System, start: State, first: State, mode: Mode, margins: tuple[float, float], longest: float, trusted: float
 ) -> tuple[Step, float, float]:
     """A step that is exact enough and misses no event, its time and how long the next one may be, s.
 
-    begun: margins at the start.
+    margins: at the start.
     """
     time, whole = min(longest, trusted), True
     while True:
@@ -79,8 +79,9 @@ def tried(
             trusted = time
             continue
         part = 1.0
-        if whole and min(step.left) >= 0:  # yet a mode may have been over, and be on again
-            part = min(lowest(begun[0], step.middle[0], step.left[0]), lowest(begun[1], step.middle[1], step.left[1]))
+        if whole and min(step.end_margins) >= 0:  # yet a mode may have been over, and be on again
+            middle, end = step.middle_margins, step.end_margins
+            part = min(lowest(margins[0], middle[0], end[0]), lowest(margins[1], middle[1], end[1]))
         if part == 1:
             break
         time, whole = part * time, False
@@ -90,20 +91,20 @@ def tried(
 
 @machine_code
 def to_event(
-    system: System, start: State, first: State, mode: Mode, begun: tuple[float, float], step: Step, latest: float
+    system: System, start: State, first: State, mode: Mode, margins: tuple[float, float], step: Step, latest: float
 ) -> tuple[State, float]:
     """The state at which a mode is over within a step, and the time until then, s; by false positions, of which one
     that stays is halved (Illinois).
 
-    begun: margins at the start.
+    margins: at the start.
     """
     earliest, near, end = 0.0, EVENT * latest, step.end
-    above, below, side = max(min(begun), 0.0), min(step.left), 0
+    above, below, side = max(min(margins), 0.0), min(step.end_margins), 0
     while latest - earliest > 2 * near:
         time = earliest + (latest - earliest) * above / (above - below)
         time = min(max(time, earliest + near), latest - near)
         step = stepped(system, start, first, mode, time)
-        margin = min(step.left)
+        margin = min(step.end_margins)
         if margin < 0:
             latest, below, end = time, margin, step.end
             above, side = above / 2 if side < 0 else above, -1
@@ -135,7 +136,7 @@ def longest_step(system: System, state: State, rates: State, mode: Mode) -> floa
 
 
 @kept_machine_code
-def advance(
+def fill_samples(
     system: System,
     state: State,
     mode: Mode,
@@ -151,7 +152,7 @@ def advance(
     if clock == 0:
         mode = mode_of(system, state)
     rates, push = rates_of(system, state, mode)
-    left, count, trusted = margins(system, state, mode, push), 0, math.inf
+    margins, count, trusted = mode_margins(system, state, mode, push), 0, math.inf
     while count < len(rows):
         rows[count, 0], rows[count, 1] = clock, not mode.engaged
         rows[count, 2], rows[count, 3], rows[count, 4] = state.crank_angle, state.crank_speed, state.distance
@@ -160,13 +161,13 @@ def advance(
         if clock >= until:
             break
         longest = min(longest_step(system, state, rates, mode), until - clock)
-        step, time, trusted = tried(system, state, rates, mode, left, longest, trusted)
-        if min(step.left) < 0:
-            state, time = to_event(system, state, rates, mode, left, step, time)
+        step, time, trusted = tried(system, state, rates, mode, margins, longest, trusted)
+        if min(step.end_margins) < 0:
+            state, time = to_event(system, state, rates, mode, margins, step, time)
             mode = mode_of(system, state)
             rates, push = rates_of(system, state, mode)
-            left = margins(system, state, mode, push)
+            margins = mode_margins(system, state, mode, push)
         else:
-            state, rates, left = step.end, step.rates, step.left
+            state, rates, margins = step.end, step.rates, step.end_margins
         clock += time
     return count, state, mode, clock

@@ -145,7 +145,7 @@ def _degrees(angles: Sequence[float] | FloatArray) -> list[float]:
     return [float(angle) for angle in np.degrees(angles) % 360]
 
 
-def summary(design: Design, windows: Sequence[Window]) -> dict[str, Any]:
+def windows_summary(design: Design, windows: Sequence[Window]) -> dict[str, Any]:
     """The table as JSON names and units it."""
     return {
         "design": design.name,

@@ -187,7 +187,7 @@ def ride(ride: Ride, fineness: int = 1) -> Trace:
     samples = np.empty((0, len(solver.SAMPLE)))
     while clock < until:
         rows = np.empty((ROWS, len(solver.SAMPLE)))
-        count, state, mode, clock = solver.advance(system, state, mode, clock, until, rows)
+        count, state, mode, clock = solver.fill_samples(system, state, mode, clock, until, rows)
         samples = np.vstack([samples, rows[:count]])
         if len(samples) > MOST_ROWS or not math.isfinite(state.speed):
             raise UnstableError(f"{ride.name}: the reduced equation of motion could not be integrated")

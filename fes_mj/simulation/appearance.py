@@ -50,7 +50,7 @@ def on_body(leg: Leg, body: str) -> tuple[str, complex, float]:
     return leg.prefix + body, 1 + 0j, 0.0
 
 
-def draw(spec: Spec, design: Design, legs: Sequence[Leg]) -> None:
+def draw_bodies(spec: Spec, design: Design, legs: Sequence[Leg]) -> None:
     """Give every body of the assembled model its geoms, and the model the camera `side`, which sees the whole turn."""
     middle = float(np.mean([leg.lateral + leg.outwards * LAYERS["frame"] for leg in legs]))
     for leg in legs:

@@ -61,7 +61,7 @@ Advance: TypeAlias = Callable[[float, tuple[int, int], Any, Fields, FloatArray, 
 
 
 @inlined_machine_code
-def lead(half: float, fields: Fields) -> None:
+def lead_speeds(half: float, fields: Fields) -> None:
     """Find the speeds at the positions' own time, as in stepping.controlled_loop."""
     for i in range(len(fields.lead)):
         fields.lead[i] = fields.qvel[i] + half * fields.qacc[i]
@@ -69,7 +69,7 @@ def lead(half: float, fields: Fields) -> None:
 
 @inlined_machine_code
 def step(pointers: tuple[int, int], fields: Fields) -> None:
-    """Step the model with the forces of the speeds that `lead` found, as in stepping.controlled_loop."""
+    """Step the model with the forces of the speeds that `lead_speeds` found, as in stepping.controlled_loop."""
     model, data = pointers
     _position(model, data)
     _position_sensors(model, data)
@@ -173,7 +173,7 @@ def _map_advance() -> Advance:
     @machine_code
     def advance(half: float, pointers: Any, arguments: Any, fields: Any, sensor_rows: Any, force_rows: Any) -> None:
         for row in range(len(sensor_rows) - 1):
-            lead(half, fields)
+            lead_speeds(half, fields)
             control(arguments, fields.qpos, fields.lead, fields.ctrl)
             step(pointers, fields)
             record(row, fields, sensor_rows, force_rows)
@@ -198,7 +198,7 @@ def _road_advance(
 ) -> None:
     control, memory = arguments
     for row in range(len(sensor_rows) - 1):
-        lead(half, fields)
+        lead_speeds(half, fields)
         act(control, memory, fields.qpos, fields.lead, fields.ctrl)
         step(pointers, fields)
         record(row, fields, sensor_rows, force_rows)

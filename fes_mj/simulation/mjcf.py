@@ -139,7 +139,7 @@ def build_mjcf(
         _add_leg(spec, root, design, leg, masses, start, options.anchors)
         state |= {leg.prefix + joint: values for joint, values in start.items()}
     if options.drawn:
-        appearance.draw(spec, design, pair)
+        appearance.draw_bodies(spec, design, pair)
     if options.driven and options.motors:
         add_motors(spec, pair)
     if held and options.compatible:  # its integrator bears no servo

@@ -112,11 +112,11 @@ def act(control: RoadControl, memory: RoadMemory, qpos: Any, speeds: Any, ctrl: 
         ctrl[control.drives[driven][0]] = between(curve, row, part)
     if len(control.muscles.group) > 0:
         for leg in range(len(memory.activation)):
-            pull(control, memory, leg, qpos, speeds, ctrl)
+            set_moments(control, memory, leg, qpos, speeds, ctrl)
 
 
 @inlined_machine_code
-def pull(control: RoadControl, memory: RoadMemory, leg: int, qpos: Any, speeds: Any, ctrl: Any) -> None:
+def set_moments(control: RoadControl, memory: RoadMemory, leg: int, qpos: Any, speeds: Any, ctrl: Any) -> None:
     """Set the moments of a leg's muscles."""
     row, activation, before = 2 * leg, memory.activation[leg], memory.felt[leg]  # of DRIVEN: the knee, then the hip
     knee, knee_at, knee_rate = control.drives[row]

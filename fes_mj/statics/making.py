@@ -16,7 +16,7 @@ from fes_mj.statics.cycles import CYCLE_POINTS, cycles
 from fes_mj.statics.work_table import WorkTable
 
 OFF = 1e-4  # m
-LENGTH_ROUNDING = 5e-4  # m
+MAKING_ROUNDING = 5e-4  # m
 _FINE = 30 * CYCLE_POINTS  # crank angles: what 0.1 mm does is small
 
 
@@ -47,8 +47,8 @@ def sensitivity(design: Design, moments: JointMoments) -> list[Effect]:
 
 
 def rounded(design: Design) -> Design:
-    """The design with its lengths rounded to LENGTH_ROUNDING; it need not turn."""
-    return with_lengths(design, np.round(lengths(design) / LENGTH_ROUNDING) * LENGTH_ROUNDING)
+    """The design with its lengths rounded to MAKING_ROUNDING; it need not turn."""
+    return with_lengths(design, np.round(lengths(design) / MAKING_ROUNDING) * MAKING_ROUNDING)
 
 
 class Gears(NamedTuple):

@@ -21,8 +21,8 @@ from fes_mj.moments.reference_tricycle import ReferenceTricycle
 from fes_mj.moments.tables import load_table
 from fes_mj.muscles.anatomy import MUSCLE_GROUPS, anatomy
 from fes_mj.muscles.identification import Candidates, weighed
-from fes_mj.muscles.posterior import WeighedRiders
-from fes_mj.muscles.prior import drawn, priors
+from fes_mj.muscles.posterior import MEMBERS, WeighedRiders
+from fes_mj.muscles.prior import prior_draws, priors
 from fes_mj.muscles.pull import pull
 from fes_mj.muscles.recovery import gains
 from fes_mj.muscles.riders import Riders
@@ -30,7 +30,6 @@ from fes_mj.muscles.timing import TURN_ANGLES, Windows, activation
 from fes_mj.validation.cranking import isometric
 
 MODEL_ERROR = 0.05  # of the largest number of its kind: what the model misses even of a rider whom it knows
-MEMBERS = 200
 CRANKED = ("cadence_rpm", "on_deg", "off_deg", "power_W", "sd_W")
 ISOMETRIC = ("hip_flexion_deg", "knee_flexion_deg", "torque_Nm", "sd_Nm")
 _BLOCK = 100  # riders at once
@@ -136,7 +135,7 @@ def identified(experiment: Experiment, candidates: int = 1000, seed: int = 28) -
 
 def judged(experiment: Experiment) -> dict[str, Any]:
     """What the experiment does to the probabilities of the gains, and to what is known of the rider."""
-    before = Riders("prior", drawn(MEMBERS, np.random.default_rng(29)), np.zeros(MEMBERS))
+    before = Riders("prior", prior_draws(MEMBERS, np.random.default_rng(29)), np.zeros(MEMBERS))
     posterior = identified(experiment)
     after = posterior.members(MEMBERS)
     missed = (experiment.seen(after) - experiment.values) / np.sqrt(np.diag(experiment.covariance))

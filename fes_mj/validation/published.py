@@ -30,7 +30,7 @@ Interval: TypeAlias = tuple[float, float]
 Prediction: TypeAlias = Callable[[Riders, CrankingSetup], FloatArray]
 
 
-def verdict(predicted: tuple[float, float, float], measured: Interval) -> str:
+def interval_verdict(predicted: tuple[float, float, float], measured: Interval) -> str:
     """By RULE; predicted: low end, middle and high end. measured: a direction has an infinite end."""
     low, middle, high = predicted
     least, most = measured
@@ -74,7 +74,7 @@ class PublishedRow:
 
     @property
     def verdict(self) -> str:
-        return verdict(self.predicted, self.measured)
+        return interval_verdict(self.predicted, self.measured)
 
     def record(self) -> dict[str, Any]:
         """As JSON names it; ends of the measurement are None where it has none."""

@@ -131,7 +131,7 @@ class LateFeedback(TorqueMap):
         return late
 
 
-def times(*factors: float) -> Callable[[FloatArray], FloatArray]:
+def scaled_by(*factors: float) -> Callable[[FloatArray], FloatArray]:
     """The first numbers of an array, times these factors."""
     return lambda values: values * np.append(factors, np.ones(len(values) - len(factors)))
 
@@ -202,20 +202,22 @@ MISTAKEN_STEPS: dict[str, Steps] = {
     "boot_forgotten": in_map(Misread, read=without_boot),
     "open_table": in_map(table=cached_property(open_table)),
     "late_feedback": in_map(LateFeedback),
-    "length_in_model": in_model("bodies", "shank", pos=times(1.01)),
+    "length_in_model": in_model("bodies", "shank", pos=scaled_by(1.01)),
     "default_solref": in_model("equalities", solref=(0.02, 1.0)),
     "soft_loops": in_model("equalities", solref=(0.002, 1.0)),
-    "loops_in_milliseconds": in_model("equalities", solref=times(1e3)),
+    "loops_in_milliseconds": in_model("equalities", solref=scaled_by(1e3)),
     "loop_inactive": in_model("equalities", active=False),
     "pins_apart": in_model("sites", "shank_pedal", pos=lambda pos: (pos[0], 1e-3, pos[2])),
-    "weak_servo": in_model("actuators", SERVO, gainprm=times(20 / SERVO_GAIN), biasprm=times(1, 1, 20 / SERVO_GAIN)),
+    "weak_servo": in_model(
+        "actuators", SERVO, gainprm=scaled_by(20 / SERVO_GAIN), biasprm=scaled_by(1, 1, 20 / SERVO_GAIN)
+    ),
     "wrong_integrator": in_model("option", integrator=mujoco.mjtIntegrator.mjINT_IMPLICITFAST),
     "gravity_axis": in_model("option", gravity=(-9.81, 0.0, 0.0)),
     "tilted_hinge": in_model("joints", "knee", axis=(math.sin(_TILT), math.cos(_TILT), 0.0)),
     "heavy_thigh": in_model("bodies", "thigh", mass=lambda mass: 2 * mass, inertia=lambda inertia: 2 * inertia),
     "damping": in_model("joints", damping=(0.01, 0.0, 0.0)),
-    "degrees": in_model("actuators", "knee", gear=times(math.degrees(1))),
-    "reversed_motor": in_model("actuators", "hip", gear=times(-1)),
+    "degrees": in_model("actuators", "knee", gear=scaled_by(math.degrees(1))),
+    "reversed_motor": in_model("actuators", "hip", gear=scaled_by(-1)),
     "stale_keyframe": in_keyframe("qpos", "crank", lambda angle: angle + math.radians(5)),
     "reversed_start": in_keyframe("qvel", "hip", lambda speed: -speed),
     "six_digits": in_model("compiler", savecompiled=True, savecanonical=True),

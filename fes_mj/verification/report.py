@@ -35,7 +35,7 @@ def report_html(
     worst = [max((check for check in checks if check.name == name), key=lambda check: check.factor) for name in names]
     return page(
         Path(__file__).with_name("report.html.j2"),
-        filters={"short": short, "fixed": fixed, "sentence": sentence},
+        filters={"short": short, "fixed": fixed, "sentence": capitalised},
         ok=all(check.ok for check in checks) and all(detection.caught for detection in detections),
         checks=checks,
         failed=[check for check in checks if not check.ok],
@@ -72,7 +72,7 @@ def fixed(value: float, digits: int) -> str:
     return "not refined" if math.isnan(value) else f"{value:.{digits}f}"
 
 
-def sentence(text: str) -> str:
+def capitalised(text: str) -> str:
     """With a capital at its begin; units and names stay as they are."""
     return text[:1].upper() + text[1:]
 

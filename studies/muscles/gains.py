@@ -14,7 +14,7 @@ from fes_mj.linkage.design_file import DESIGNS, SIX_BARS, load_design
 from fes_mj.moments.joint_moments import RIDER_GROUPS
 from fes_mj.muscles.anatomy import MUSCLE_GROUPS, Anatomy
 from fes_mj.muscles.by_angle import Gains, null_test
-from fes_mj.muscles.prior import drawn
+from fes_mj.muscles.prior import prior_draws
 from fes_mj.muscles.pull import pull
 from fes_mj.muscles.riders import Riders, load_riders
 from fes_mj.muscles.rules import RULES, stimulated
@@ -30,7 +30,9 @@ MEASURED_W = (8, 35)  # both legs, of FES cycling (Szecsi 2014, doi:10.1186/1743
 
 def riders_of_prior(count: int, **fixed: float) -> Riders:
     """Riders of the prior, with these quantities at one value."""
-    values = drawn(count, np.random.default_rng(26)) | {name: np.full(count, value) for name, value in fixed.items()}
+    values = prior_draws(count, np.random.default_rng(26)) | {
+        name: np.full(count, value) for name, value in fixed.items()
+    }
     return Riders("prior", values, np.zeros(count))
 
 
@@ -68,7 +70,7 @@ def group_powers(riders: Riders, name: str, muscles: Anatomy) -> FloatArray:
 
 def group_rows(muscles: Anatomy, title: str) -> Iterator[tuple[Any, ...]]:
     """Gain of each group alone for time constants, without any fit; and of the vasti alone."""
-    centre = {name: float(np.median(values)) for name, values in drawn(4001, np.random.default_rng(1)).items()}
+    centre = {name: float(np.median(values)) for name, values in prior_draws(4001, np.random.default_rng(1)).items()}
     groups = [*((name, number, 1.0) for number, name in enumerate(MUSCLE_GROUPS)), ("vasti", 0, 0.0)]
     for rise in (0.05, 0.07, 0.10):
         for group, number, rectus in groups:

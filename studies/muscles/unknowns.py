@@ -15,7 +15,7 @@ from fes_mj.linkage.design_file import SIX_BARS, load_design
 from fes_mj.moments.joint_moments import RIDER_GROUPS
 from fes_mj.muscles.anatomy import Anatomy
 from fes_mj.muscles.power import best_turn
-from fes_mj.muscles.prior import drawn
+from fes_mj.muscles.prior import prior_draws
 from fes_mj.muscles.pull import pull
 from fes_mj.muscles.riders import Riders, load_riders
 from fes_mj.muscles.timing import TURN_ANGLES, activation, best_windows
@@ -66,7 +66,9 @@ def posterior_rows() -> Iterator[tuple[Any, ...]]:
 
 def sensitivity_rows() -> Iterator[tuple[Any, ...]]:
     """Median gains with a quantity at either end of its prior, or in the thirds of riders with least and most of it."""
-    ends = {name: np.quantile(values, (0.05, 0.95)) for name, values in drawn(4001, np.random.default_rng(2)).items()}
+    ends = {
+        name: np.quantile(values, (0.05, 0.95)) for name, values in prior_draws(4001, np.random.default_rng(2)).items()
+    }
     for group in RIDER_GROUPS:
         riders = load_riders(group)
         for name in CHANGED:

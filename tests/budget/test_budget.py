@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 import fes_mj
-from fes_mj.budget.budget import Spread, error_budget, powers, shares, summary, together
+from fes_mj.budget.budget import Spread, budget_summary, error_budget, powers, sobol_shares, together
 from fes_mj.budget.power import UncertainPower
-from fes_mj.budget.unknowns import EXTRAPOLATION, MASSES, MOMENTS, RIDER, priors
+from fes_mj.budget.unknowns import EXTRAPOLATION, MASSES, MOMENTS, RIDER, budget_priors
 from fes_mj.common.arrays import FloatArray, IntArray
 from fes_mj.common.errors import MissingPartError
 from fes_mj.moments.joint_moments import JointMoments
@@ -73,7 +73,7 @@ def test_together_every_realisation_comes_up_equally_often() -> None:
 def test_the_worse_a_thing_is_known_the_larger_its_contribution(monkeypatch: pytest.MonkeyPatch) -> None:
     result, budgets = static("r1", fes_mj.load_moments()), []
     for value in (0, 0.005, 0.02):
-        monkeypatch.setitem(priors()[RIDER], "length_sd_m", value)
+        monkeypatch.setitem(budget_priors()[RIDER], "length_sd_m", value)
         budget = error_budget(result, draws=100)
         assert budget is not None
         budgets.append(budget)
@@ -113,7 +113,7 @@ def test_legs_with_moments_of_their_own_are_independent_in_their_moments_alone()
 
 def test_what_cannot_be_told_is_null(smooth_moments: JointMoments) -> None:
     assert error_budget(static("r1", smooth_moments)) is None
-    assert summary(None) == {"power_sd_total_W": None, "power_sd_by": None}
+    assert budget_summary(None) == {"power_sd_total_W": None, "power_sd_by": None}
 
 
 def test_too_few_that_turn_have_no_spread() -> None:
@@ -160,7 +160,7 @@ def test_shares_of_a_sum_are_the_squares_of_its_factors() -> None:
     def power(rows: dict[str, IntArray]) -> FloatArray:
         return np.asarray(10 + sum(factors[name] * drawn[name][numbers] for name, numbers in rows.items()))
 
-    result, whole = shares(power, NAMES, COUNT), sum(factor**2 for factor in factors.values())
+    result, whole = sobol_shares(power, NAMES, COUNT), sum(factor**2 for factor in factors.values())
     for name, factor in factors.items():
         assert result[name].first == pytest.approx(factor**2 / whole, abs=0.01)
         assert result[name].total == pytest.approx(factor**2 / whole, abs=0.01)
@@ -175,7 +175,7 @@ def test_shares_of_a_sum_and_a_product() -> None:
         x, y, z = (drawn[name][rows[name]] if name in rows else 0.0 for name in NAMES)
         return np.asarray(1 + x + y * z + np.zeros(len(next(iter(rows.values())))))
 
-    result = shares(power, NAMES, COUNT)
+    result = sobol_shares(power, NAMES, COUNT)
     assert [result[name].first for name in NAMES] == pytest.approx([0.75, 0, 0], abs=0.03)
     assert [result[name].total for name in NAMES] == pytest.approx([0.75, 0.25, 0.25], abs=0.03)
 
@@ -187,12 +187,12 @@ def test_shares_are_the_same_every_time_and_without_the_linkages_that_do_not_tur
         total = np.asarray(sum(drawn[name][numbers] for name, numbers in rows.items()))
         return np.where(total > 2.5, np.nan, total)
 
-    result = shares(power, NAMES, COUNT, 256)
-    assert result == shares(power, NAMES, COUNT, 256)
+    result = sobol_shares(power, NAMES, COUNT, 256)
+    assert result == sobol_shares(power, NAMES, COUNT, 256)
     assert all(0.2 < share.first < 0.45 for share in result.values())
 
 
 def test_without_salib_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "SALib", None)
     with pytest.raises(MissingPartError, match=r"pip install 'fes-mj\[paper\]'"):
-        shares(lambda rows: np.zeros(3), NAMES, 3)
+        sobol_shares(lambda rows: np.zeros(3), NAMES, 3)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import fes_mj
-from fes_mj.budget.unknowns import MASSES, Realisations, priors, realisations
+from fes_mj.budget.unknowns import MASSES, Realisations, budget_priors, realisations
 from fes_mj.linkage.assembly import joint_ranges
 from fes_mj.linkage.design_file import SIX_BARS
 from fes_mj.linkage.variables import LENGTHS, component, replaced
@@ -24,8 +24,8 @@ def of(design: fes_mj.Design, count: int = COUNT) -> Realisations:
 
 
 def test_every_prior_has_its_source_or_the_word_assumption() -> None:
-    assert [*priors()][-1] == MASSES
-    for prior in priors().values():
+    assert [*budget_priors()][-1] == MASSES
+    for prior in budget_priors().values():
         assert prior["prior"]
         assert any(word in prior["source"].lower() for word in ("assumption", "results/", "data/", "exact"))
 

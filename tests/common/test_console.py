@@ -2,7 +2,7 @@
 
 import pytest
 
-from fes_mj.common.console import conclude, print_table, say, verdict
+from fes_mj.common.console import check_word, conclude, print_table, say
 
 MARKED = "[red]a[/blue] :car: \x1b[31m"
 SHOWN = r"[red]a[/blue] :car: \x1b[31m"
@@ -14,7 +14,7 @@ def test_text_is_neither_broken_nor_read_as_markup(capsys: pytest.CaptureFixture
 
 
 def test_tables_show_their_cells_as_they_are(capsys: pytest.CaptureFixture[str]) -> None:
-    print_table(MARKED, ("name", "verdict"), [(MARKED, verdict(True)), ("b", verdict(False))])
+    print_table(MARKED, ("name", "verdict"), [(MARKED, check_word(True)), ("b", check_word(False))])
     lines = [line.split() for line in capsys.readouterr().out.splitlines()]
     assert lines[0] == SHOWN.split()
     assert [*SHOWN.split(), "ok"] in lines

@@ -15,7 +15,7 @@ from fes_mj.common.writing import csv_text
 from fes_mj.linkage import kinematics
 from fes_mj.linkage.design_file import DESIGNS, load_design
 from fes_mj.linkage.joints import JOINTS
-from fes_mj.moments.averaging import coefficients, mean_of, weights_on
+from fes_mj.moments.averaging import mean_of, turn_coefficients, weights_on
 from fes_mj.moments.files import load_moments, moments_csv, moments_of, sampled_coefficients, sampled_moments
 from fes_mj.moments.fourier import fourier
 from fes_mj.moments.joint_moments import RIDER_GROUPS, JointMoments
@@ -98,7 +98,7 @@ def test_a_trial_without_noise(tmp_path: Path) -> None:
 
 def by_scatter(measurement: Measurement) -> JointMoments:
     """The moments with the error that the scatter of their turns has, without that of tape measure and cadence."""
-    rows = np.stack([coefficients(turn) for turn in measurement.turns])
+    rows = np.stack([turn_coefficients(turn) for turn in measurement.turns])
     weights = weights_on(measurement.moments.measured_on)
     _, covariance = mean_of(rows, [turn.source for turn in measurement.turns], weights)
     return replace(measurement.moments, covariance=covariance)

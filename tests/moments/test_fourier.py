@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fes_mj.common.arrays import FloatArray
-from fes_mj.moments.fourier import HARMONICS, WIDEST_GAP, fit, fourier, gaps
+from fes_mj.moments.fourier import HARMONICS, WIDEST_GAP, fit_fourier, fourier, gaps
 
 TURN = np.linspace(0, 2 * np.pi, 721)
 
@@ -28,7 +28,7 @@ def test_twelve_samples_give_three_harmonics(count: int) -> None:
     angle = np.arange(count) * 2 * np.pi / count + 0.1
     shuffled = np.random.default_rng(0).permutation(np.append(angle, angle[0] + 2 * np.pi)) - 4 * np.pi
     for samples in (angle, shuffled):
-        assert np.abs(fourier(TURN) @ fit(samples, curve(samples)) - curve(TURN)).max() < 1e-3
+        assert np.abs(fourier(TURN) @ fit_fourier(samples, curve(samples)) - curve(TURN)).max() < 1e-3
 
 
 @pytest.mark.parametrize(
@@ -41,7 +41,7 @@ def test_noisy_samples_are_averaged(count: int, noise: float) -> None:
     for _ in range(10):
         angle = np.arange(count) * 2 * np.pi / count + random.uniform(0, 0.1, count)
         values = curve(angle) + noise * random.standard_normal((count, 2))
-        misses.append(fourier(TURN) @ fit(angle, values) - curve(TURN))
+        misses.append(fourier(TURN) @ fit_fourier(angle, values) - curve(TURN))
         least.append(fourier(TURN)[:, few] @ np.linalg.lstsq(fourier(angle)[:, few], values)[0] - curve(TURN))
     assert np.std(misses) < 1.7 * np.std(least)
 
@@ -54,25 +54,27 @@ def test_no_curve_swings_far_beyond_its_samples(count: int, span: float) -> None
     for _ in range(5):
         angle = np.radians(random.uniform(0, span, count))
         values = np.tile(curve(angle), 4) + noise * random.standard_normal((count, 8))
-        fitted = fourier(TURN) @ fit(angle, values)
+        fitted = fourier(TURN) @ fit_fourier(angle, values)
         margin = 0.35 * np.ptp(values, axis=0)
         assert np.all((fitted > values.min(axis=0) - margin) & (fitted < values.max(axis=0) + margin))
 
 
 def test_the_same_moment_everywhere_stays_what_it_is() -> None:
     angle = np.radians([0.0, 1.0, 100.0, 200.0])
-    assert fourier(TURN) @ fit(angle, np.tile([0.0, 5.0], (4, 1))) == pytest.approx(np.tile([0.0, 5.0], (721, 1)))
+    assert fourier(TURN) @ fit_fourier(angle, np.tile([0.0, 5.0], (4, 1))) == pytest.approx(
+        np.tile([0.0, 5.0], (721, 1))
+    )
 
 
 def test_a_wide_gap_is_bridged_without_swinging() -> None:
     angle = np.radians(np.arange(0.0, 151.0, 10.0))
     values = curve(angle)
-    bridged = fourier(TURN) @ fit(angle, values)
+    bridged = fourier(TURN) @ fit_fourier(angle, values)
     margin = 0.2 * np.ptp(values, axis=0)
     assert np.all(bridged > values.min(axis=0) - margin)
     assert np.all(bridged < values.max(axis=0) + margin)
     middle = np.radians(255)  # of the gap
-    assert fourier(middle) @ fit(angle, values) == pytest.approx(values[[0, -1]].mean(axis=0), abs=0.2)
+    assert fourier(middle) @ fit_fourier(angle, values) == pytest.approx(values[[0, -1]].mean(axis=0), abs=0.2)
 
 
 def test_gaps_go_round_the_circle() -> None:

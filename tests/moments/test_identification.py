@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fes_mj.common.errors import InputError
-from fes_mj.moments.identification import identify
+from fes_mj.moments.identification import identify_tricycle
 from fes_mj.moments.measurement import load_measurement
 from tests.moments.made_up import R1, R2, SEAT, Trial, measurement
 
@@ -23,7 +23,7 @@ from tests.moments.made_up import R1, R2, SEAT, Trial, measurement
 )
 def test_what_was_not_declared_is_found(trial: Trial, expected: tuple[float, ...], tmp_path: Path) -> None:
     own = load_measurement(measurement(tmp_path, trial))
-    numbers = identify(own.turns, own.moments.measured_on)
+    numbers = identify_tricycle(own.turns, own.moments.measured_on)
     assert [number.symbol for number in numbers] == ["R1", "R2", "seat_angle"]
     assert [number.identified for number in numbers] == pytest.approx(expected, abs=1e-5)
     assert [number.declared for number in numbers] == pytest.approx((abs(R1), R2, SEAT))
@@ -35,7 +35,7 @@ def test_noise_is_in_the_error(tmp_path: Path) -> None:
     within = []
     for seed in range(30):
         own = load_measurement(measurement(tmp_path, Trial(angle_noise=0.5, seed=seed)))
-        numbers = identify(own.turns, own.moments.measured_on)
+        numbers = identify_tricycle(own.turns, own.moments.measured_on)
         within += [abs(number.identified - number.declared) < number.sd for number in numbers]
         assert all(number.sd < {"m": 0.002, "deg": 0.3}[number.unit] for number in numbers)
     assert 0.5 < np.mean(within) < 0.85
@@ -48,4 +48,4 @@ def test_both_angles_are_needed(tmp_path: Path) -> None:
         load_measurement(path)
     own = load_measurement(measurement(tmp_path, Trial(turns=2.2)))
     with pytest.raises(InputError, match="1 such turns are there"):
-        identify(own.turns[:1], own.moments.measured_on)
+        identify_tricycle(own.turns[:1], own.moments.measured_on)

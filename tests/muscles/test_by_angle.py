@@ -3,12 +3,12 @@ import pytest
 
 from fes_mj.linkage.design_file import load_design
 from fes_mj.muscles.by_angle import null_test
-from fes_mj.muscles.prior import drawn
+from fes_mj.muscles.prior import prior_draws
 from fes_mj.muscles.riders import Riders
 
 
 def test_rule_gives_the_measured_tricycle_back_and_makes_gains_for_riders_who_have_less():
-    riders = Riders("known", drawn(60, np.random.default_rng(7)), np.zeros(60))
+    riders = Riders("known", prior_draws(60, np.random.default_rng(7)), np.zeros(60))
     gains = null_test(riders, [load_design(name) for name in ("trt", "r1", "r2", "d1", "d2")])
     assert gains.true[0] == pytest.approx(1, rel=1e-9)
     assert gains.by_angle[0] == pytest.approx(1, abs=2e-3)  # moments are read between whole degrees

@@ -5,9 +5,9 @@ from fes_mj.linkage import kinematics
 from fes_mj.linkage.design_file import DESIGNS, load_design
 from fes_mj.linkage.joints import JOINTS, PerJoint
 from fes_mj.moments.joint_moments import RIDER_GROUPS
-from fes_mj.muscles.activation import answer, trapezium
+from fes_mj.muscles.activation import periodic_activation, trapezium
 from fes_mj.muscles.anatomy import MUSCLE_GROUPS
-from fes_mj.muscles.by_joint import LEADING, TURNED, reversals
+from fes_mj.muscles.by_joint import LEADING, TURNED, around_reversals
 from fes_mj.muscles.prior import ramp
 from fes_mj.muscles.pull import pull
 from fes_mj.muscles.riders import load_riders
@@ -29,7 +29,7 @@ def test_expected_power_is_that_of_a_fine_grid(name, group):
     on, width = np.radians(np.moveaxis(riders.windows(), -1, 0))[..., None]
     there = np.stack([source[LEADING[group]] for group in MUSCLE_GROUPS])[:, None]
     asked = trapezium(there - on, width, trial.cadence * ramp())
-    active = answer(asked, 2 * np.pi / cadence, riders["rise_s"][..., 0, 0], riders.fall[..., 0, 0])
+    active = periodic_activation(asked, 2 * np.pi / cadence, riders["rise_s"][..., 0, 0], riders.fall[..., 0, 0])
     late = np.round(riders["delay_s"][..., 0] * cadence / turn[1]).astype(int)
     active = np.take_along_axis(active, ((np.arange(FINE) - late) % FINE)[None], axis=-1)
     power = (active * pull(riders, motion, cadence).power[:, :, 0]).sum(axis=0).mean()
@@ -38,7 +38,7 @@ def test_expected_power_is_that_of_a_fine_grid(name, group):
 
 def test_a_joint_turns_round_between_two_angles_that_are_all_but_one():
     design = load_design("trt")
-    before, after = reversals(design, TURN_ANGLES).reshape(len(JOINTS), 2, 2).swapaxes(0, 1)
+    before, after = around_reversals(design, TURN_ANGLES).reshape(len(JOINTS), 2, 2).swapaxes(0, 1)
     assert np.abs(after - before).max() <= TURNED
     for row, joint in enumerate(JOINTS):
         rates = [kinematics.solve(design, ends[row]).joint_rate[joint] for ends in (before, after)]

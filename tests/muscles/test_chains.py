@@ -9,7 +9,7 @@ from fes_mj.moments.uncertainty import power_weights
 from fes_mj.muscles.chains import moved
 from fes_mj.muscles.identification import WHOLE, Measured
 from fes_mj.muscles.power import muscle_turn
-from fes_mj.muscles.prior import drawn, priors, quantile, score
+from fes_mj.muscles.prior import normal_score, prior_draws, priors, quantile
 from fes_mj.muscles.riders import Riders
 from fes_mj.muscles.rules import trial_windows
 
@@ -22,16 +22,16 @@ def measured_power(value, deviation):
 
 @pytest.fixture(scope="module")
 def many():
-    return Riders("prior", drawn(300, np.random.default_rng(1)), np.zeros(300))
+    return Riders("prior", prior_draws(300, np.random.default_rng(1)), np.zeros(300))
 
 
 def test_scores_are_the_inverse_of_quantiles():
     scores = np.array([-2.0, -0.3, 0.4, 1.9])
     for name in priors():
         if name != "passive_included":
-            assert score(name, quantile(name, scores)) == pytest.approx(scores)
+            assert normal_score(name, quantile(name, scores)) == pytest.approx(scores)
         values = quantile(name, scores)
-        assert quantile(name, score(name, values)) == pytest.approx(values)
+        assert quantile(name, normal_score(name, values)) == pytest.approx(values)
 
 
 def test_chains_stay_in_the_prior_where_nothing_was_measured(many):
@@ -39,7 +39,7 @@ def test_chains_stay_in_the_prior_where_nothing_was_measured(many):
     after = moved(many, measured_power(0.0, 1000.0), np.random.default_rng(2), 10)
     assert np.mean(after.values["rise_s"] != many.values["rise_s"]) > 0.9
     for name in ("rise_s", "max_speed", "quadriceps_on_deg", "residual_loss_W"):
-        before = score(name, after.values[name])
+        before = normal_score(name, after.values[name])
         assert abs(before.mean()) < 4 / np.sqrt(len(many))
         assert before.std() == pytest.approx(1, abs=0.2)
 

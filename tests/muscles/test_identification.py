@@ -4,10 +4,10 @@ import pytest
 from fes_mj.linkage.joints import PerJoint
 from fes_mj.moments.fourier import fourier
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
-from fes_mj.muscles.identification import Candidates, coefficients, identify
+from fes_mj.muscles.identification import Candidates, identify_riders, moment_coefficients
 from fes_mj.muscles.posterior import WeighedRiders
 from fes_mj.muscles.power import muscle_turn
-from fes_mj.muscles.prior import drawn, priors, quantile
+from fes_mj.muscles.prior import prior_draws, priors, quantile
 from fes_mj.muscles.riders import Riders, load_riders
 from fes_mj.muscles.timing import Windows
 from tools.fit_muscles import measured
@@ -18,7 +18,7 @@ POWER_IN_TRT = 0  # row of the evidence
 def test_coefficients_are_those_of_the_curve():
     angle = np.arange(120) * (2 * np.pi / 120)
     knee = 3 + 2 * np.cos(angle - 1) + np.sin(7 * angle)
-    both = coefficients(PerJoint(knee, -knee))
+    both = moment_coefficients(PerJoint(knee, -knee))
     assert fourier(angle) @ both[:49] == pytest.approx(knee)
     assert both[49:] == pytest.approx(-both[:49])
 
@@ -66,7 +66,7 @@ def test_members_come_as_often_as_they_weigh(riders):
 
 def test_riders_that_explain_the_evidence_give_its_powers():
     numbers = measured("p1p3")
-    posterior = identify(numbers, np.random.default_rng(1), 400)
+    posterior = identify_riders(numbers, np.random.default_rng(1), 400)
     members = posterior.members(50)
     seen = Candidates.of(members, numbers)
     strengths = np.stack([members.values[name] for name in list(priors())[:3]], axis=1)
@@ -93,4 +93,4 @@ def test_prior_quantiles_are_the_stated_ones():
     assert quantile("max_speed", scores) == pytest.approx([5, 8.5, 12])
     assert quantile("gluteus_strength", scores[1:2]) == pytest.approx(0.39 * 0.67449, rel=1e-4)
     assert quantile("passive_included", scores) == pytest.approx([0, 1, 1])
-    assert set(drawn(3, np.random.default_rng(0))) == set(priors())
+    assert set(prior_draws(3, np.random.default_rng(0))) == set(priors())

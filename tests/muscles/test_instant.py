@@ -7,7 +7,7 @@ from fes_mj.common.machine_code import in_lists, readable
 from fes_mj.linkage import kinematics
 from fes_mj.linkage.design_file import DESIGNS, load_design
 from fes_mj.muscles import instant, step
-from fes_mj.muscles.activation import answer, trapezium
+from fes_mj.muscles.activation import periodic_activation, trapezium
 from fes_mj.muscles.anatomy import MUSCLE_GROUPS
 from fes_mj.muscles.contraction import PLATEAU, tension
 from fes_mj.muscles.instant import LegMuscles, Stimulus, activated, joint_moments, stimulation, weights
@@ -112,7 +112,7 @@ def test_steps_of_activation_are_those_of_the_turn(riders):
     member, turn = riders.taken([4]), 0.8
     rise, fall = float(member["rise_s"].item()), float(member.fall.item())
     stimulus = trapezium(TURN_ANGLES - 1.0, 2.0, 0.4)
-    expected = answer(stimulus, turn, rise, fall)
+    expected = periodic_activation(stimulus, turn, rise, fall)
     step, value = turn / len(TURN_ANGLES), float(expected[0])
     rising, falling = weights(step, rise), weights(step, fall)
     for before, after, then in zip(stimulus, np.roll(stimulus, -1), np.roll(expected, -1), strict=True):

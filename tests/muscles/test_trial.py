@@ -10,12 +10,12 @@ from fes_mj.moments.files import load_moments, moments_of
 from fes_mj.moments.fourier import HARMONICS
 from fes_mj.moments.reference_tricycle import ReferenceTricycle
 from fes_mj.muscles.identification import STRENGTHS, Candidates
+from fes_mj.muscles.posterior import MEMBERS
 from fes_mj.muscles.riders import Riders, load_riders
 from fes_mj.muscles.trial import (
     ERROR,
     IDENTIFIED,
     LEAST_EXPLAINED,
-    MEMBERS,
     ORDERS,
     explained_share,
     fit_muscles,

@@ -10,7 +10,7 @@ import pytest
 import fes_mj
 from fes_mj.budget.budget import Spread, together, unknowns
 from fes_mj.budget.power import UncertainPower
-from fes_mj.budget.unknowns import priors
+from fes_mj.budget.unknowns import budget_priors
 from fes_mj.linkage.design_file import DESIGNS, SIX_BARS
 from fes_mj.moments.joint_moments import RIDER_GROUPS
 from fes_mj.moments.uncertainty import with_sd
@@ -67,7 +67,7 @@ def test_more_is_never_more_probable() -> None:
 
 def test_shares_are_shares() -> None:
     for row in BLAME:
-        cells = [row[f"{unknown}, %"] for unknown in [*priors()][:-1]]
+        cells = [row[f"{unknown}, %"] for unknown in [*budget_priors()][:-1]]
         pairs = [tuple(map(float, cell.split(" / "))) for cell in cells if cell is not None]
         assert len(pairs) == len(cells)
         error = row["largest 95 % error, %"]

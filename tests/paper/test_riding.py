@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from fes_mj import load_design
-from fes_mj.budget.unknowns import MASSES, priors
+from fes_mj.budget.unknowns import MASSES, budget_priors
 from fes_mj.common.units import KMH
 from fes_mj.muscles.drive import Muscles, load_muscles
 from fes_mj.muscles.riders import load_riders
@@ -78,7 +78,7 @@ def test_everything_that_matters_on_a_road_is_drawn_and_always_the_same() -> Non
         assert len({*values}) == len(drawn)
         assert values == [of(one) for one in again]
     factors = np.log([one.design.rider.leg_mass_factor for one in riding.drawn_rides(ride, muscles, 200)])
-    assert factors.std() == pytest.approx(priors()[MASSES]["log_sd"], rel=0.2)
+    assert factors.std() == pytest.approx(budget_priors()[MASSES]["log_sd"], rel=0.2)
     assert {one.drive.cadence for one in drawn} == {design.linkage.cadence}
 
 

@@ -13,7 +13,7 @@ import fes_mj
 from fes_mj.linkage.assembly import joint_ranges
 from fes_mj.linkage.kinematics import solve
 from fes_mj.linkage.turning import turning
-from fes_mj.riding.stimulation import CORE, LEAST_SWING, MUSCLES, Window, stimulation, summary, table_csv
+from fes_mj.riding.stimulation import CORE, LEAST_SWING, MUSCLES, Window, stimulation, table_csv, windows_summary
 
 
 def of(windows: list[Window], muscle: str, leg: str = "right") -> list[Window]:
@@ -89,7 +89,7 @@ def test_hamstrings_help_at_the_hip_where_it_extends() -> None:
 def test_table_and_json_say_the_same() -> None:
     d1 = fes_mj.load_design("d1")
     windows = stimulation(d1)
-    records, rows = summary(d1, windows)["windows"], [*csv.DictReader(io.StringIO(table_csv(d1, windows)))]
+    records, rows = windows_summary(d1, windows)["windows"], [*csv.DictReader(io.StringIO(table_csv(d1, windows)))]
     assert len(rows) == len(records) == 8  # the hip of D1 extends twice a turn
     for record, row in zip(records, rows, strict=True):
         for name in ("works", "works_from_tdc", "core"):

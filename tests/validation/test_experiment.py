@@ -10,7 +10,7 @@ from fes_mj.common.errors import InputError
 from fes_mj.linkage.design_file import load_design
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.muscles.power import muscle_turn
-from fes_mj.muscles.prior import drawn
+from fes_mj.muscles.prior import prior_draws
 from fes_mj.muscles.recovery import gains
 from fes_mj.muscles.riders import Riders
 from fes_mj.muscles.timing import Windows
@@ -28,7 +28,7 @@ def written(tmp_path: Path) -> Path:
 
 
 def riders(count: int, seed: int) -> Riders:
-    return Riders("truth", drawn(count, np.random.default_rng(seed)), np.zeros(count))
+    return Riders("truth", prior_draws(count, np.random.default_rng(seed)), np.zeros(count))
 
 
 def asked(plan: Experiment, rider: Riders, random: np.random.Generator) -> Experiment:

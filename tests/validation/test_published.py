@@ -9,12 +9,12 @@ import pytest
 
 from fes_mj.linkage import kinematics
 from fes_mj.linkage.turning import turning
-from fes_mj.muscles.prior import drawn
+from fes_mj.muscles.prior import prior_draws
 from fes_mj.muscles.riders import Riders
 from fes_mj.muscles.timing import TURN_ANGLES
 from fes_mj.validation import cranking, machines, roads
 from fes_mj.validation.by_angle import torque_ratio_by_angle
-from fes_mj.validation.published import AGREES, CANNOT_TELL, CONTRADICTS, prediction, rows, verdict
+from fes_mj.validation.published import AGREES, CANNOT_TELL, CONTRADICTS, interval_verdict, prediction, rows
 
 RESULTS = Path(__file__).parents[2] / "results"
 KEYS = {"name", "kind", "question", "quantity", "unit", "drive", "timing", "predicted_by", "riders", "said", "assumed"}
@@ -22,7 +22,7 @@ KEYS = {"name", "kind", "question", "quantity", "unit", "drive", "timing", "pred
 
 @pytest.fixture(scope="module")
 def riders():
-    return Riders("p1p2", drawn(6, np.random.default_rng(8)), np.zeros(6))
+    return Riders("p1p2", prior_draws(6, np.random.default_rng(8)), np.zeros(6))
 
 
 @pytest.mark.parametrize(
@@ -39,7 +39,7 @@ def riders():
     ],
 )
 def test_verdict(predicted, measured, said):
-    assert verdict(predicted, measured) == said
+    assert interval_verdict(predicted, measured) == said
 
 
 @pytest.mark.parametrize("row", rows(), ids=lambda row: row.name)
