@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Annotated, Any, Literal, TypeAlias
+from urllib.parse import urlsplit
 
 from cyclopts import Argument, ArgumentCollection, Group, Parameter
 from cyclopts.validators import Number, all_or_none, mutually_exclusive
@@ -74,6 +75,20 @@ def refuse_beside(flag: str, others: Mapping[str, object]) -> None:
             raise InputError(f"{_given(name, value)} and {flag} exclude each other; leave out one of them")
 
 
+def _tcp(_: object, address: str | None) -> None:
+    """Refuse what is no tcp://host:port: Dask takes it for something else, and may wait for it."""
+    if address is None:
+        return
+    try:
+        parts = urlsplit(address)
+        host = (parts.hostname or "").encode("idna")
+        sound = bool(host) and bool(parts.port) and address == f"tcp://{parts.netloc}" and "@" not in address
+    except ValueError:
+        sound = False
+    if not sound:
+        raise ValueError("No Dask scheduler has such an address; give tcp://host:port as `dask scheduler` prints it.")
+
+
 DESIGN_HELP = (
     "Of the paper trt, the traditional recumbent tricycle (four-bar), r1 or r2, a crank-rocker tricycle (CRT), d1 or "
     "d2, a coupler-driven one (CDT); or a path to a design file."
@@ -88,7 +103,9 @@ Dims: TypeAlias = Annotated[
     Parameter(help="Dimensions of one of the paper's designs: as identified, or as the paper prints them."),
 ]
 Seed: TypeAlias = Annotated[int, Parameter(validator=Number(gte=0))]
-Jobs: TypeAlias = Annotated[int, Parameter(validator=Number(gte=1))]
+_WORKERS = Group("jobs or cluster", show=False, validator=mutually_exclusive)
+Jobs: TypeAlias = Annotated[int, Parameter(group=("Parameters", _WORKERS), validator=Number(gte=1))]
+Cluster: TypeAlias = Annotated[str, Parameter(group=("Parameters", _WORKERS), validator=_tcp)]
 PeopleOfEachSex: TypeAlias = Annotated[int, Parameter(validator=Number(gte=10, lte=100_000))]
 _MOMENTS = Group("Joint moments")
 

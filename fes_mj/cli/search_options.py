@@ -12,7 +12,17 @@ from cyclopts import Group, Parameter
 from cyclopts.validators import Number, mutually_exclusive
 
 from fes_mj.cli.drive import DriveOptions
-from fes_mj.cli.options import Flag, Jobs, MomentsOptions, PeopleOfEachSex, PrintOptions, Seed, needs, refuse_beside
+from fes_mj.cli.options import (
+    Cluster,
+    Flag,
+    Jobs,
+    MomentsOptions,
+    PeopleOfEachSex,
+    PrintOptions,
+    Seed,
+    needs,
+    refuse_beside,
+)
 from fes_mj.common.errors import require_extra
 from fes_mj.common.provenance import provenance
 from fes_mj.linkage.riders import PEOPLE_PER_SEX
@@ -94,7 +104,7 @@ class SearchOptions(PrintOptions, MomentsOptions):
     clearance_min: Annotated[float | None, Parameter(group=_BUILD, validator=Number(lte=1))] = None
     print_problem: Flag = False
     jobs: Jobs = 1
-    cluster: str | None = None
+    cluster: Cluster | None = None
 
     def check(self) -> None:
         """Refuse what cannot be asked for together, and a missing package, before anything runs."""

@@ -5,10 +5,9 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
-from urllib.parse import urlsplit
 
 from fes_mj.cli.drive import DriveOptions
-from fes_mj.cli.options import Cadence, Jobs, Legs, Out, PrintOptions, warn_of
+from fes_mj.cli.options import Cadence, Cluster, Jobs, Legs, Out, PrintOptions, warn_of
 from fes_mj.common.console import print_table, progress_bar, say
 from fes_mj.common.errors import InputError, require_extra
 from fes_mj.common.parallel import Workers
@@ -29,7 +28,7 @@ def sweep(
     cadence: Cadence | None = None,
     legs: Legs = 1,
     jobs: Jobs | None = None,
-    cluster: str | None = None,
+    cluster: Cluster | None = None,
     csv: Path | None = None,
     plot: Path | None = None,
     drive: DriveOptions = DriveOptions(),
@@ -51,8 +50,6 @@ def sweep(
 
     require_extra("optimize", "pyarrow")
     workers = Workers(jobs if jobs is not None else os.cpu_count() or 1, cluster)
-    if cluster is not None:
-        _require_address(cluster)
     muscles = MuscleOptions(drive.timing, drive.duty, drive.muscles) if drive.drive == "muscles" else None
     sweep = Sweep(load_study(study, cadence, muscles, legs), out)
     for moments in sweep.study.moments.values():
@@ -88,21 +85,6 @@ def _run(sweep: "Sweep", workers: Workers, name: str, silent: bool) -> dict[str,
     seconds = time.perf_counter() - start
     summary = sweep.summary() | {"found_finished": before, "seconds": seconds}
     return summary | {"points_per_second": (summary["points"] - before) / seconds}
-
-
-def _require_address(cluster: str) -> None:
-    """Raise InputError for what is no tcp://host:port: Dask takes it for something else, and may wait for it."""
-    try:
-        parts = urlsplit(cluster)
-        host = (parts.hostname or "").encode("idna")
-        sound = bool(host) and bool(parts.port) and cluster == f"tcp://{parts.netloc}" and "@" not in cluster
-    except ValueError:
-        sound = False
-    if not sound:
-        raise InputError(
-            f"--cluster {cluster}: no Dask scheduler has such an address; "
-            "give the tcp://host:port that `dask scheduler` prints"
-        )
 
 
 def _require_plottable(study: Study, path: Path) -> None:

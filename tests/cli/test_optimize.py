@@ -135,6 +135,8 @@ def test_own_moments_have_no_error_bar(tmp_path: Path, capsys: pytest.CaptureFix
         (["cdt", "--problem", "missing.toml"], "missing.toml: cannot read the problem"),
         (["cdt", "--ripple-limit", "0"], '"0.0" for --ripple-limit. Must be > 0.'),
         (["cdt", "--ripple-limit", "nan"], '"nan" for --ripple-limit'),
+        (["cdt", "--cluster", "nonsense"], '"nonsense" for --cluster. No Dask scheduler has such an address'),
+        (["cdt", "--cluster", "tcp://a:1", "--jobs", "2"], "exclusive arguments: {--jobs, --cluster}"),
         (["cdt", "--print-problem", "--json"], "--json and --print-problem exclude each other"),
         (["cdt", "--print-problem", "-o", "b.toml"], "--out b.toml and --print-problem exclude each other"),
         (["cdt", "--samples", "100"], "--samples 100 needs --riders"),

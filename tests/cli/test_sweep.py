@@ -74,7 +74,10 @@ def test_no_scheduler_loses_nothing(
     before = sorted(path.name for path in done.folder.iterdir())
     study = done.folder.with_name("study.toml")
     assert run(["sweep", str(study), "-o", str(done.folder), f"--cluster={address}"]) == 2
-    assert f"--cluster {address}: no Dask scheduler" in capsys.readouterr().err.replace("\n", " ")
+    said = capsys.readouterr().err.replace("\n", " ")
+    assert re.search(r"no Dask scheduler (has|answers)", said, re.IGNORECASE)
+    assert address in said
+    assert "--cluster" in said
     assert sorted(path.name for path in done.folder.iterdir()) == before
 
 
