@@ -17,7 +17,7 @@ from fes_mj.common.errors import InputError
 from fes_mj.common.provenance import digest
 from fes_mj.common.reading import read_json
 from fes_mj.common.text import printable
-from fes_mj.common.writing import json_text, make_folder, write_text
+from fes_mj.common.writing import TEMPORARY, json_text, make_folder, write_text
 from fes_mj.linkage.design_file import design_toml
 from fes_mj.optimization.problem import Problem
 from fes_mj.optimization.search import SearchResult
@@ -115,7 +115,8 @@ class Findings:
 
     def remove(self) -> None:
         """Remove the folder, as all is finished; the recipe last: after a kill in here the same command goes on."""
-        for pattern in ("search-*.json", "best*", ".*", "recipe.json"):
+        ours = ("search-*.json", "best-*.json", "best-*.toml", "best.toml", f"{TEMPORARY}*", "recipe.json")
+        for pattern in ours:
             for path in self.folder.glob(pattern):
                 path.unlink(missing_ok=True)
         if not any(self.folder.iterdir()):

@@ -63,7 +63,7 @@ def test_refusals(capsys: pytest.CaptureFixture[str]) -> None:
         for arguments, message in (
             (["d1", "--port", str(port)], f"--port {port} is in use by another program"),
             (["d1", "--port", "70000"], '"70000" for --port. Must be <= 65535.'),
-            (["d1", "--host", ""], "--host is ''"),
+            (["d1", "--host", ""], '"" for --host. It must be a name or an address of this machine'),
             (["d7"], "d7: no such design"),
         ):
             assert run(["explore", *arguments, "--no-browser"]) == 2

@@ -152,6 +152,16 @@ def test_a_folder_of_somebody_else_is_left_alone(tmp_path: Path) -> None:
     assert contents(findings.folder) == {"thesis.tex": b"mine"}
 
 
+def test_of_a_folder_only_what_a_search_wrote_is_removed(tmp_path: Path) -> None:
+    findings, theirs = findings_at(tmp_path / "best.toml"), {"best-of-all.txt": b"mine", ".notes": b"mine too"}
+    findings.folder.mkdir()
+    (findings.folder / ".notes").write_bytes(theirs[".notes"])
+    with findings.searching(problem_of("d1")):
+        (findings.folder / "best-of-all.txt").write_bytes(theirs["best-of-all.txt"])
+    findings.remove()
+    assert contents(findings.folder) == theirs
+
+
 def test_every_number_of_a_problem_counts() -> None:
     problem = problem_of("d1")
     others = [
