@@ -140,7 +140,7 @@ def _print_turn(case: fes_mj.Case) -> None:
     run, turns = case.simulation, case.statics.turns
     dynamic = (
         f"{run.power_mean:.3f}",
-        f"{2 * np.pi * run.power_mean / run.cadence:.3f}",
+        f"{run.work_per_turn:.3f}",
         *(tables.span(ends) for ends in run.joint_range_deg),
     )
     sides = ("",) if len(turns) == 1 else (", right", ", left")

@@ -179,7 +179,7 @@ class Case(Brief, Setup):
         static = self.statics.summary() | self.joint_forces.summary()
         return static | {
             "power_mean_W": run.power_mean,
-            "work_per_turn_J": 2 * np.pi * run.power_mean / run.cadence,
+            "work_per_turn_J": run.work_per_turn,
             "knee_range_deg": run.joint_range_deg.knee,
             "hip_range_deg": run.joint_range_deg.hip,
             **{f"simulated_{name}": value for name, value in self.characteristics.items()},

@@ -9,7 +9,6 @@ import numpy as np
 from fes_mj.common.arrays import BoolArray, FloatArray
 from fes_mj.common.brief import Brief
 from fes_mj.common.errors import require_within
-from fes_mj.common.units import turns_per_second
 from fes_mj.fit.search import best_seats, seat_scores
 from fes_mj.fit.seats import OUTSIDE_EQUAL, SEAT_LIMITS, SeatLimits, Seats, losses, outside_range
 from fes_mj.linkage.design import Design
@@ -196,7 +195,7 @@ def _ridden(design: Design, thigh: FloatArray, shank: FloatArray, seats: Seats, 
     turn = cycles(moved.moved(design.with_rider(thigh=thigh[:, None], shank=shank[:, None])), table)
     cadence = np.full(thigh.shape, design.linkage.cadence)
     valid = ~np.any([obstacle.hindered for obstacle in obstacles(turn, cadence)], axis=0)
-    power = np.where(valid, turn.work[:, 0] * turns_per_second(cadence), np.nan)
+    power = np.where(valid, turn.power(cadence)[:, 0], np.nan)
     return Ridden(turn.turns, power, np.where(turn.turns, outside_range(turn), np.nan))
 
 

@@ -6,7 +6,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from fes_mj.common.arrays import FloatArray
-from fes_mj.common.units import turns_per_second
 from fes_mj.linkage.design import Design
 from fes_mj.statics.cycles import Cycles, cycles
 from fes_mj.statics.work_table import WorkTable
@@ -74,7 +73,7 @@ def score(design: Design, seats: Seats, table: WorkTable) -> Scores:
     """
     moved = seats.moved(design)
     turn = cycles(moved, table)
-    power = turn.work[:, 0] * turns_per_second(np.ravel(moved.linkage.cadence))
+    power = turn.power(moved.linkage.cadence)[:, 0]
     return Scores(
         np.where(turn.turns, outside_range(turn), _NO_TURN - 1e3 * turn.turning.reach),
         np.where(turn.turns, power, -_WORSE),

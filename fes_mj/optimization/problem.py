@@ -299,7 +299,7 @@ def make_problem(
     # a hair above, so that the design itself is within its own limits
     speeds, asked = joint_speeds(other, table).map(lambda speed: speed * (1 + 1e-9)), PerJoint(knee_speed, hip_speed)
     speed = PerJoint(*(speed if limit is None else limit for speed, limit in zip(speeds, asked, strict=True)))
-    baseline = cycles(other, table).work[0] * turns_per_second(other.linkage.cadence)
+    baseline = cycles(other, table).power(other.linkage.cadence)[0]
     if muscles and (caution or ripple):
         raise InputError("caution and the limit on the ripple are for joint moments; muscles have neither")
     even = None if ripple is None else RippleLimit(ripple, moments)

@@ -6,7 +6,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from fes_mj.common.arrays import FloatArray
-from fes_mj.common.units import turns_per_second
 from fes_mj.crosscheck.turn_case import Case
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.joints import PerJoint
@@ -71,7 +70,7 @@ def to_rider(design: Design, table: WorkTable, random: np.random.Generator) -> T
 
 
 def _tolerance(designs: Design, table: WorkTable) -> Tolerance:
-    power = cycles(designs, table).work[:, 0] * turns_per_second(designs.linkage.cadence)
+    power = cycles(designs, table).power(designs.linkage.cadence)[:, 0]
     turning = np.isfinite(power)
     powers = np.where(turning, power, 0.0)
     return Tolerance(float(turning.mean()), float(np.percentile(powers, PERCENTILE)), float(np.median(powers)))

@@ -5,7 +5,7 @@ from itertools import product
 import numpy as np
 
 from fes_mj.common.arrays import FloatArray
-from fes_mj.common.units import turns_per_second
+from fes_mj.common.units import work_per_turn
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.design_file import DIMENSIONS, SIX_BARS, load_design
 from fes_mj.linkage.legs import TWO_LEGS
@@ -50,7 +50,7 @@ def smoothness_table(runs: Runs) -> Rows:
         muscle = case.reference_power(mass_scale=0.0)
         masses = case.reference_power() - muscle
         energy = [energy_swing(power, run.cadence) for power in (muscle, run.power)]
-        work = 2 * np.pi * muscle.mean() / run.cadence
+        work = work_per_turn(muscle.mean(), run.cadence)
         ride = Ride(
             run.design, runs.static[name, group].moments, Road(tricycle_mass=TRICYCLE_MASS, rolling_mass=0.0), "fixed"
         )
@@ -75,7 +75,7 @@ def slopes(design: Design, moments: JointMoments) -> dict[str, tuple[FloatArray,
     turn = cycles(
         with_lengths(design, (lengths(design)[:, None] + shifts)[..., None]), uncertain_table(moments), _POINTS
     )
-    power = turn.work * turns_per_second(design.linkage.cadence)
+    power = turn.power(design.linkage.cadence)
     slowed = power * (turn.joints.knee.travel[0] / turn.joints.knee.travel)[:, None]
     by_held = {}
     for held, values in zip(HELD, (power, slowed), strict=True):

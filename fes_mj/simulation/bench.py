@@ -10,7 +10,7 @@ import numpy as np
 from fes_mj.common.arrays import ComplexArray, FloatArray
 from fes_mj.common.brief import Brief
 from fes_mj.common.checks import Check, check, power_scale
-from fes_mj.common.units import RPM
+from fes_mj.common.units import RPM, work_per_turn
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.joints import JOINTS, PerJoint
 from fes_mj.linkage.legs import LEGS, Leg
@@ -95,6 +95,11 @@ class Simulation(Brief):
     def power_mean(self) -> float:
         """Mean crank power of one leg over the measured turns, W."""
         return float(self.power.mean()) / len(self.legs)
+
+    @property
+    def work_per_turn(self) -> float:
+        """Mean work of one leg on the crank in a measured turn, J."""
+        return float(work_per_turn(self.power_mean, self.cadence))
 
     @property
     def joint_range_deg(self) -> PerJoint[list[float]]:

@@ -7,7 +7,7 @@ the loops it draws in the moment-angle plane: a sum over its reversals, where no
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -64,6 +64,10 @@ class Cycles:
     def turns(self) -> BoolArray:
         """Which of the designs turn, shape (designs,)."""
         return self.turning.turns
+
+    def power(self, cadence: Any) -> FloatArray:
+        """Mean crank power of one leg, W, shape (designs, sets of moments); cadence: rad/s, of all or (designs,)."""
+        return self.work * np.reshape(turns_per_second(cadence), (-1, 1))
 
     @cached_property
     def outside(self) -> tuple[FloatArray, PerJoint[BoolArray]]:

@@ -6,7 +6,6 @@ from typing import NamedTuple
 import numpy as np
 
 from fes_mj.common.reading import DATA, read_toml
-from fes_mj.common.units import turns_per_second
 from fes_mj.linkage.assembly import clearances
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.joints import JOINTS
@@ -39,7 +38,7 @@ def sensitivity(design: Design, moments: JointMoments) -> list[Effect]:
     steps = np.array([[OFF / 2 * (name == other) for other in LENGTHS] for name in names])
     batch = with_lengths(design, (drawn + np.vstack([-steps, steps])).T[..., None])
     turn = cycles(batch, WorkTable.of(moments), _FINE)
-    power = turn.work[:, 0] * turns_per_second(design.linkage.cadence)
+    power = turn.power(design.linkage.cadence)[:, 0]
     ranges = [np.degrees(turn.joints[joint].high - turn.joints[joint].low) for joint in JOINTS]
     margin = np.min([clearance.margin for clearance in clearances(batch)], axis=0)
     changes = (np.diff(values.reshape(2, -1), axis=0)[0].tolist() for values in (power, *ranges, margin))

@@ -10,7 +10,7 @@ import numpy as np
 from fes_mj.common.arrays import ComplexArray, FloatArray
 from fes_mj.common.brief import Brief
 from fes_mj.common.errors import InputError
-from fes_mj.common.units import RPM
+from fes_mj.common.units import RPM, work_per_turn
 from fes_mj.linkage import kinematics
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.joints import PerJoint
@@ -275,7 +275,7 @@ class LegTurns:
             "legs": self.legs,
             "power_mean_W": self.power_mean,
             "power_sd_W": self.power_sd,
-            "work_per_turn_J": 2 * math.pi * self.power_mean / self.first.cadence,
+            "work_per_turn_J": work_per_turn(self.power_mean, self.first.cadence),
             **power_characteristics(self.power),
         }
 

@@ -100,8 +100,7 @@ def _static(batch: Design, rpm: FloatArray, moments: JointMoments) -> Columns:
     certain = moments.covariance is None
     turn = cycles(batch, WorkTable.of(moments) if certain else uncertain_table(moments))
     turns_per_s, why = turns_per_second(rpm * RPM), _reasons(turn, rpm)
-    work = np.where((why == "")[:, None], turn.work, np.nan)
-    power = work * turns_per_s[:, None]
+    work, power = (np.where((why == "")[:, None], values, np.nan) for values in (turn.work, turn.power(rpm * RPM)))
     deviation = np.hypot(np.linalg.norm(power[:, 1:], axis=1), turn.outside_sd * turns_per_s)
     result: dict[str, Any] = {
         "cadence_rpm": rpm,

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from fes_mj.common.units import work_per_turn
 from fes_mj.crosscheck.turn_case import Case
 from fes_mj.simulation.bench import BenchOptions, Simulation
 from fes_mj.simulation.mjcf import LOOP_SOLREF, Physics
@@ -103,7 +104,7 @@ def refine(case: Case) -> Refinement:
     """Run a case at every level; the first is the case's own run."""
     count = steps_per_turn(case.design, case.cadence, case.timestep)
     exact = case.steps.quasi_static(points=EXACT_POINTS).work_per_turn
-    scale = case.power_scale * 2 * math.pi / case.cadence  # J
+    scale = work_per_turn(case.power_scale, case.cadence)
 
     def level(run: Simulation, loop_time: float) -> Level:
         lost, error = run.energy.lost / scale, (_work(case, run) - exact) / scale
