@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from fes_mj.cli.drive import DriveOptions
 from fes_mj.cli.options import Cadence, Cluster, Jobs, Legs, Out, PrintOptions, warn_of
 from fes_mj.common.console import print_table, progress_bar, say
-from fes_mj.common.errors import InputError, require_extra
+from fes_mj.common.errors import InputError, MissingPartError, require_extra
 from fes_mj.common.parallel import Workers
 from fes_mj.common.writing import made_folder, require_writable
 from fes_mj.sweep.study import MuscleOptions, Study, label, load_study
@@ -81,7 +81,11 @@ def _run(sweep: "Sweep", workers: Workers, name: str, silent: bool) -> dict[str,
     # each process compiles the loop of a dynamic study, which takes seconds
     first = ", its loop is compiled first" if sweep.study.analysis == "dynamic" else ""
     with progress_bar(f"{name}, points{first}", sweep.study.points, silent, before) as advance:
-        sweep.run(workers, advance, finished)
+        try:
+            sweep.run(workers, advance, finished)
+        except (InputError, MissingPartError):  # no scheduler: the folder is as it was
+            sweep.release()
+            raise
     seconds = time.perf_counter() - start
     summary = sweep.summary() | {"found_finished": before, "seconds": seconds}
     return summary | {"points_per_second": (summary["points"] - before) / seconds}

@@ -114,6 +114,11 @@ class Sweep(Brief):
             write_text(manifest, json.dumps(ours, indent=1))
         remove_leftovers(self.folder)
 
+    def release(self) -> None:
+        """Remove the record of a study of which nothing was computed."""
+        if not any(self.folder.glob("chunk-*")):
+            (self.folder / MANIFEST).unlink(missing_ok=True)
+
     def run(
         self,
         workers: Workers = HERE,

@@ -81,6 +81,15 @@ def test_no_scheduler_loses_nothing(
     assert sorted(path.name for path in done.folder.iterdir()) == before
 
 
+@pytest.mark.process
+def test_no_scheduler_leaves_no_folder(study: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("distributed")
+    monkeypatch.setattr("fes_mj.common.parallel.SCHEDULER_PATIENCE", "1s")
+    out = study.with_name("new")
+    assert run(["sweep", str(study), "-o", str(out), "--cluster", "tcp://127.0.0.1:9"]) == 2
+    assert not out.exists()
+
+
 def test_a_cadence_for_all_points(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "study.toml"
     path.write_text('[grid]\ndesign = ["d1", "r2"]\n')
