@@ -33,6 +33,9 @@ _Speed = Annotated[float, Parameter(validator=Number(gt=0))]
 _START, _SPEEDS = (Group(f"like or {name}", show=False, validator=mutually_exclusive) for name in ("start", "speeds"))
 _BUILD = Group("What can be built", validator=needs("--limits", "buildable"))
 _FRONT = Group("front", show=False, validator=needs("--method", "nsga-ii"))
+_SEARCHES = Group(
+    "searches", show=False, validator=needs("--method", "differential-evolution", "cma-es", "random-pursuit")
+)
 _PEOPLE = Group("People", validator=needs("--riders", "population", "population-p10"))
 _PACKAGES = {"cma-es": "cma", "nsga-ii": "pymoo"}
 _WITHOUT_EFFECT = ("json", "quiet", "jobs", "cluster", "print_problem")  # on what is found
@@ -79,9 +82,9 @@ class SearchOptions(PrintOptions, MomentsOptions):
     """
 
     drive: DriveOptions = field(default_factory=DriveOptions)
-    method: Annotated[Methods, Parameter(group=("Parameters", _FRONT))] = "differential-evolution"
+    method: Annotated[Methods, Parameter(group=("Parameters", _FRONT, _SEARCHES))] = "differential-evolution"
     budget: Annotated[int | None, Parameter(validator=Number(gte=1000))] = None
-    searches: Annotated[int, Parameter(validator=Number(gte=1))] = 4
+    searches: Annotated[int, Parameter(group=("Parameters", _SEARCHES), validator=Number(gte=1))] = 4
     seed: Seed = 0
     like: Annotated[str | None, Parameter(group=("Parameters", _START, _SPEEDS))] = None
     start: Annotated[str | None, Parameter(group=("Parameters", _START))] = None

@@ -135,6 +135,7 @@ def test_own_moments_have_no_error_bar(tmp_path: Path, capsys: pytest.CaptureFix
         (["cdt", "--problem", "missing.toml"], "missing.toml: cannot read the problem"),
         (["cdt", "--ripple-limit", "0"], '"0.0" for --ripple-limit. Must be > 0.'),
         (["cdt", "--ripple-limit", "nan"], '"nan" for --ripple-limit'),
+        (["cdt", "--method", "nsga-ii", "--searches", "2"], "--searches 2 needs --method differential-evolution or"),
         (["cdt", "--cluster", "nonsense"], '"nonsense" for --cluster. No Dask scheduler has such an address'),
         (["cdt", "--cluster", "tcp://a:1", "--jobs", "2"], "exclusive arguments: {--jobs, --cluster}"),
         (["cdt", "--print-problem", "--json"], "--json and --print-problem exclude each other"),
