@@ -61,7 +61,7 @@ def tables() -> list[Table]:
             identify_riders(measured, random, CANDIDATES).flattened().members(MEMBERS), measured, random, STEPS
         )
         found = gains(members, designs, base)
-        ranks.append(np.mean(found < gains(members, designs, base, known=known.taken([row])), axis=1))
+        ranks.append(np.mean(found < gains(members, designs, base, actual=known.taken([row])), axis=1))
         shares.append(explained_share(members, trial))
         sharper.append(found.std(axis=1))
     apart = np.abs(np.array(ranks) - 0.5)

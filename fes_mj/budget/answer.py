@@ -77,8 +77,8 @@ class Answer(Brief):
     @property
     def brief(self) -> str:
         parts = {"as the paper assumes": self.paper_power, "for a rider": self.rider_power, "per TRT": self.rider_ratio}
-        known = ", ".join(f"{name} {part.value:.2f}" for name, part in parts.items() if part)
-        return f"{self.design.name}: {known or 'nothing known'}"
+        numbers = ", ".join(f"{name} {part.value:.2f}" for name, part in parts.items() if part)
+        return f"{self.design.name}: {numbers or 'nothing known'}"
 
     @property
     def paper_power(self) -> Estimate | None:
@@ -173,7 +173,7 @@ def rider_powers(design: Design, riders: Riders, cadence: float | None = None, d
         pulled = pull_each(riders, motion, cadence)
         power = MuscleTurn(pulled, activation(windows, riders, cadence)).power_mean[:, 0]
         reach, swing = leg_reach(motion.design, motion.points["pedal"].value), np.ptp(motion.joint_angle.hip, axis=-1)
-        known = batch_turning(motion.design, reach, swing).turns & anatomy().in_range(riders.flexion_each(motion))[:, 0]
-    power = np.where(known, power, np.nan)
+        valid = batch_turning(motion.design, reach, swing).turns & anatomy().in_range(riders.flexion_each(motion))[:, 0]
+    power = np.where(valid, power, np.nan)
     power.setflags(write=False)
     return power

@@ -72,9 +72,9 @@ def error_budget(*legs: QuasiStatic, draws: int = BUDGET_DRAWS) -> ErrorBudget |
     if total is None:
         return None
     uncertain = [UncertainPower(leg, draws) for leg in legs]
-    alone, known = np.arange(draws), _linear(legs) | {MASSES: 0.0}
+    alone, linear = np.arange(draws), _linear(legs) | {MASSES: 0.0}
     by = {
-        name: known[name] if name in known else Spread.of(powers(uncertain, {name: alone})).sd
+        name: linear[name] if name in linear else Spread.of(powers(uncertain, {name: alone})).sd
         for name in budget_priors()
     }
     return ErrorBudget(by, Spread.of(total), draws)
@@ -118,8 +118,8 @@ def powers(legs: list[UncertainPower], rows: RealisationRows) -> FloatArray:
     """UncertainPower.at of the mean of legs; what belongs to a leg is independent of the other's."""
     of_legs = [legs[0].at(rows)]
     for leg in legs[1:]:
-        own = {name: leg.count - 1 - numbers if name in _OF_A_LEG else numbers for name, numbers in rows.items()}
-        of_legs.append(leg.at(own))
+        opposite = {name: leg.count - 1 - numbers if name in _OF_A_LEG else numbers for name, numbers in rows.items()}
+        of_legs.append(leg.at(opposite))
     return np.asarray(np.mean(of_legs, axis=0))
 
 

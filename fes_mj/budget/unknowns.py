@@ -79,9 +79,9 @@ def _legs(design: Design, count: int, random: np.random.Generator) -> dict[str, 
 
 def _dimensions(design: Design, count: int) -> dict[str, FloatArray]:
     """Of a design as identified what identification leaves open; otherwise within the last digit of its lengths."""
-    known = identified_draws(design.name)
-    if known and design.linkage == load_design(design.name).linkage:
-        return {name: _spread(values, count) for name, values in known.items()}
+    identified = identified_draws(design.name)
+    if identified and design.linkage == load_design(design.name).linkage:
+        return {name: _spread(values, count) for name, values in identified.items()}
     random = np.random.default_rng(_seed(design.name))
     sizes = {name: component(design, name) for name in LENGTHS if component(design, name)}
     written = [np.format_float_positional(size, trim="-") for size in sizes.values()]

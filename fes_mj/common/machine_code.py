@@ -56,8 +56,8 @@ def sources(*structures: type) -> int:
 def _njit(function: Function, **options: bool) -> Function:
     if not COMPILED:
         return function
-    made: Function = import_module("numba").njit(nogil=True, **options)(function)
-    return made
+    compiled: Function = import_module("numba").njit(nogil=True, **options)(function)
+    return compiled
 
 
 def readable(value: Structure) -> Structure:

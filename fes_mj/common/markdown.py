@@ -17,7 +17,9 @@ class Table(NamedTuple):
         cells = [tuple(self.columns), *self.cells]
         widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
         text = [not spec for spec in self.columns.values()]
-        rule = [("-" * width if left else "-" * (width - 1) + ":") for width, left in zip(widths, text, strict=True)]
+        rule = [
+            ("-" * width if is_text else "-" * (width - 1) + ":") for width, is_text in zip(widths, text, strict=True)
+        ]
         lines = [_line(row, widths, text) for row in cells]
         parts = [
             f"## {self.title}" if self.title else "",
@@ -43,6 +45,7 @@ def _text(value: Any, spec: str) -> str:
 
 def _line(cells: Sequence[str], widths: list[int], text: list[bool]) -> str:
     padded = (
-        cell.ljust(width) if left else cell.rjust(width) for cell, width, left in zip(cells, widths, text, strict=True)
+        cell.ljust(width) if is_text else cell.rjust(width)
+        for cell, width, is_text in zip(cells, widths, text, strict=True)
     )
     return f"| {' | '.join(padded)} |"

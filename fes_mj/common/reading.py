@@ -59,10 +59,10 @@ class Section:
 
     def only(self, allowed: Iterable[str]) -> None:
         """Refuse keys that nobody reads."""
-        known = [*allowed]
+        keys = [*allowed]
         for key in self.content:
-            if key not in known:
-                raise InputError(f"{self.path}: unknown key {self.label(key)}; allowed here: {', '.join(known)}")
+            if key not in keys:
+                raise InputError(f"{self.path}: unknown key {self.label(key)}; allowed here: {', '.join(keys)}")
 
     def require(self, keys: Iterable[str], needs: str) -> None:
         """Refuse a table in which a key is missing."""
@@ -84,8 +84,8 @@ class Section:
 
     def choice(self, key: str, options: Iterable[str], default: str | None = None) -> str:
         """One of some words."""
-        known = [*options]
-        word: str = self.value(key, default, lambda value: value in known, f"one of {', '.join(known)}")
+        words = [*options]
+        word: str = self.value(key, default, lambda value: value in words, f"one of {', '.join(words)}")
         return word
 
     def switch(self, key: str) -> bool:

@@ -50,13 +50,13 @@ def make_folder(folder: Path, what: str) -> None:
 @contextmanager
 def made_folder(folder: Path, what: str) -> Iterator[None]:
     """As make_folder; one that was made goes again if what follows is refused or fails and left nothing in it."""
-    made = not folder.exists()
+    is_new = not folder.exists()
     make_folder(folder, what)
     try:
         yield
     except BaseException:
         with suppress(OSError):  # there is something in it
-            if made:
+            if is_new:
                 folder.rmdir()
         raise
 
@@ -207,8 +207,8 @@ def write_files(contents: Mapping[Path, str | bytes], unnamed: Collection[Path] 
     data = {path: content.encode() if isinstance(content, str) else content for path, content in contents.items()}
     records = {}
     for folder in {path.parent for path in unnamed}:
-        own = [_digest(data[path]) for path in unnamed if path.parent == folder]
-        records[folder / FOLDER_RECORD] = "\n".join(dict.fromkeys([*_recorded(folder), *own, ""])).encode()
+        digests = [_digest(data[path]) for path in unnamed if path.parent == folder]
+        records[folder / FOLDER_RECORD] = "\n".join(dict.fromkeys([*_recorded(folder), *digests, ""])).encode()
     data = records | data  # should a kill come between, what stands there is known, whether new or old
     with ExitStack() as stack:
         new = {path: stack.enter_context(temporary_beside(path)) for path in data}

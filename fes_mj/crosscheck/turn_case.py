@@ -73,8 +73,8 @@ class Case(Brief, Setup):
         static = self.static
         if isinstance(static, MuscleStatic):
             return static
-        own = () if static.moments.left is None or self.legs == 1 else (self.steps.quasi_static("left_"),)
-        return LegTurns((static, *cast("tuple[QuasiStatic, ...]", own)), self.legs)
+        left_turn = () if static.moments.left is None or self.legs == 1 else (self.steps.quasi_static("left_"),)
+        return LegTurns((static, *cast("tuple[QuasiStatic, ...]", left_turn)), self.legs)
 
     @cached_property
     def simulation(self) -> Simulation:

@@ -56,22 +56,22 @@ def mechanism(pen: Pen, build: Build, gaps: Sequence[Gap], box: Box) -> None:
     cloud = np.concatenate([*paths.values(), *(line for line, _ in lines)])
     low, high = complex(cloud.real.min(), cloud.imag.min()), complex(cloud.real.max(), cloud.imag.max())
     scale = largest_scale(high - low, box.size - 2j * LINE)
-    own = pen.moved(box.middle - 1j * LINE - scale * (low + high) / 2, scale)
+    view = pen.moved(box.middle - 1j * LINE - scale * (low + high) / 2, scale)
     for line, layer in lines:
-        own.line(line, layer, close=True)
+        view.line(line, layer, close=True)
     returning = {"knee"} | ({"pedal"} if build.design.linkage.architecture.pedal_body == "rocker" else set())
     for name, path in paths.items():
-        own.line(_one_way(path) if name in returning else path, "PATH", close=name not in returning)
+        view.line(_one_way(path) if name in returning else path, "PATH", close=name not in returning)
     crosses = [seen(complex(points[joint].value)) for joint in FIXED_POINTS if joint in points]
     for cross in crosses:
-        own.cross(cross, 4.0)
+        view.cross(cross, 4.0)
     ends = [[*map(seen, gap.ends)] for gap in gaps]
     middles = [sum(pair) / 2 for pair in ends]
     for number, place in enumerate(_beside(middles, crosses, TEXT_HEIGHT / scale)):
         leader = place - middles[number]
-        own.line(ends[number], "DIMENSIONS")
-        own.line([middles[number], place - TEXT_HEIGHT / scale * leader / abs(leader)], "DIMENSIONS")
-        own.text(str(number + 1), place, align="MIDDLE_CENTER")
+        view.line(ends[number], "DIMENSIONS")
+        view.line([middles[number], place - TEXT_HEIGHT / scale * leader / abs(leader)], "DIMENSIONS")
+        view.text(str(number + 1), place, align="MIDDLE_CENTER")
     angles = [f"{np.degrees(FULL_TURN[place]):.1f} deg" for place in (bent, stretched)]
     pen.text(
         f"MECHANISM {ratio(scale)}, seen from the rider's right; links thick with the leg bent most (crank at "
@@ -92,7 +92,7 @@ def _beside(points: Sequence[complex], others: Sequence[complex], letter: float)
     """Where each point's number stands, as near to it as other numbers, points and what else is there let it."""
     around, taken = np.exp(2j * np.pi * (np.arange(16) + 0.5) / 16), [*points, *others]
     for point in points:
-        places = (complex(point + radius * letter * way) for radius in range(2, 20) for way in around)
+        places = (complex(point + radius * letter * direction) for radius in range(2, 20) for direction in around)
         taken.append(next(place for place in places if all(abs(place - other) >= 2 * letter for other in taken)))
     return taken[-len(points) :] if points else []
 

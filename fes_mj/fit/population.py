@@ -149,8 +149,8 @@ def fit_population(
             _ridden(design, people.thigh, people.shank, chosen, table),
         )
         probes = slice(0, _PROBES)
-        own = best_seats(design, people.thigh[probes], people.shank[probes], table, limits)[1].power
-        errors.append(riders[who].fitted.power[probes] - own)
+        searched = best_seats(design, people.thigh[probes], people.shank[probes], table, limits)[1].power
+        errors.append(riders[who].fitted.power[probes] - searched)
         done()
     fine = [np.linspace(axis[0], axis[-1], _FINE) for axis in (thigh, shank)]
     return PopulationFit(
@@ -183,9 +183,9 @@ def _offered(people: Legs, thigh: FloatArray, shank: FloatArray, seats: FloatArr
 
 def _chosen(design: Design, people: Legs, offered: FloatArray, table: WorkTable) -> Seats:
     """The best of the seats that people try, the first of which is as drawn; in none do they get farther outside."""
-    known = seat_scores(design, np.column_stack([people.thigh, people.shank]), offered, table)
-    more = known.outside[:, :1] - known.outside.min(axis=1, keepdims=True)
-    best = losses(known, known, outside_slack=np.minimum(more, OUTSIDE_EQUAL)).argmin(axis=1)
+    scores = seat_scores(design, np.column_stack([people.thigh, people.shank]), offered, table)
+    more = scores.outside[:, :1] - scores.outside.min(axis=1, keepdims=True)
+    best = losses(scores, scores, outside_slack=np.minimum(more, OUTSIDE_EQUAL)).argmin(axis=1)
     return Seats(*offered[np.arange(len(best)), best].T)
 
 

@@ -93,20 +93,20 @@ def outside_range(turn: Cycles) -> FloatArray:
 
 def losses(
     seats: Scores,
-    known: Scores,
+    offered: Scores,
     aims: int = 3,
     power_slack: float = POWER_EQUAL,
     outside_slack: FloatArray | float = OUTSIDE_EQUAL,
 ) -> FloatArray:
-    """What to minimise over the seats of each rider, to find the best of those known, shape as `seats`.
+    """What to minimise over the seats of each rider, to find the best of those offered, shape as `seats`.
 
     aims: 1 for the least outside, 2 for the most power of those, 3 for the shortest way of those. power_slack,
     outside_slack: what counts as equal, W and deg.
     """
     if aims == 1:
         return seats.outside
-    outside = known.outside.min(axis=-1, keepdims=True) + outside_slack
-    most = np.where(known.outside <= outside, known.power, -_WORSE).max(axis=-1, keepdims=True)
+    outside = offered.outside.min(axis=-1, keepdims=True) + outside_slack
+    most = np.where(offered.outside <= outside, offered.power, -_WORSE).max(axis=-1, keepdims=True)
     short = np.maximum(most - power_slack - seats.power, 0)
     in_range = -seats.power if aims == 2 else np.where(short > 0, _WORSE + short, seats.distance)
     return np.where(seats.outside > outside, _WORSE**2 + seats.outside, in_range)

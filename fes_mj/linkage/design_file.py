@@ -132,12 +132,12 @@ def read_values(section: Section, kind: str, *others: str, owner: str = "", part
 
     owner: "linkage" or "rider", whose variables they are, if that is not the table's name. partial: nothing is needed.
     """
-    known = _variables(owner or section.name, kind)
-    section.only((*known, *others))
-    for symbol, variable in known.items():
+    variables = _variables(owner or section.name, kind)
+    section.only((*variables, *others))
+    for symbol, variable in variables.items():
         if variable.needed and not partial:
             section.require([symbol], f"a {kind} needs {variable.allowed}")
-    return {v.attribute: _value(section, v) for symbol, v in known.items() if symbol in section.content}
+    return {v.attribute: _value(section, v) for symbol, v in variables.items() if symbol in section.content}
 
 
 def _variables(owner: str, kind: str) -> dict[str, Variable]:
@@ -176,8 +176,8 @@ def design_toml(design: Design, comment: str = "") -> str:
             value = getattr(owner, variable.attribute)
             if not (variable.implied and value == getattr(type(owner), variable.attribute)):
                 lines.append(f"{symbol} = {_written(value, variable)}")
-    known = {name: value for name, value in vars(design.frame).items() if value is not None}
-    lines += ["[frame]"] * bool(known) + [f"{name} = {_plain(value)}" for name, value in known.items()]
+    frame = {name: value for name, value in vars(design.frame).items() if value is not None}
+    lines += ["[frame]"] * bool(frame) + [f"{name} = {_plain(value)}" for name, value in frame.items()]
     return "\n".join(lines) + "\n"
 
 

@@ -103,10 +103,10 @@ def _crank_angle(
     angles = solved(vstack([diags_array(rate) @ terms, bent[:, :count]]), np.concatenate([rate * guess, even]))
     for _ in range(_STEPS):
         motion = solve(measured_on.design, terms @ angles + measured_on.top_dead_centre)
-        own = motion.joint_angle.knee
-        line = csr_array(np.column_stack([np.ones(len(own)), own]))
+        knee_angle = motion.joint_angle.knee
+        line = csr_array(np.column_stack([np.ones(len(knee_angle)), knee_angle]))
         columns = vstack([hstack([diags_array(gain * motion.joint_rate.knee) @ terms, line]), bent])
-        step = solved(columns, np.concatenate([knee - zero - gain * own, -(bent[:, :count] @ angles)]))
+        step = solved(columns, np.concatenate([knee - zero - gain * knee_angle, -(bent[:, :count] @ angles)]))
         angles, zero, gain = angles + step[:-2], zero + step[-2], gain + step[-1]
     return BSpline(knots, angles, 3)
 

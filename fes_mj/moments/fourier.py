@@ -85,10 +85,10 @@ def gaps(angle: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 def _bridges(angle: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Points on straight lines across the wide gaps, and the curves' values there."""
-    inside, (known, widths) = np.mod(angle, 2 * np.pi), gaps(angle)
+    inside, (sampled, widths) = np.mod(angle, 2 * np.pi), gaps(angle)
     points, heights = [np.empty(0)], [np.empty((0, values.shape[1]))]
     for number in np.flatnonzero(widths > WIDEST_GAP):
-        start, stop = known[number], known[(number + 1) % len(known)]
+        start, stop = sampled[number], sampled[(number + 1) % len(sampled)]
         first, last = (values[inside == end].mean(axis=0) for end in (start, stop))
         part = np.arange(_BRIDGE, widths[number] - _BRIDGE / 2, _BRIDGE) / widths[number]
         points.append(start + part * widths[number])

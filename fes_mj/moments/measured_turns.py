@@ -93,10 +93,10 @@ def _by_crank(description: Description, recording: Recording, table: TextTable, 
     timed = table.path.suffix.lower() in OPENSIM or description.columns["time"] or table.time_column
     if timed:  # a series over time
         table, time = timed_rows(table, description.columns["time"], description.time_unit, (crank, *used))
-    given = bounded(table, crank, LARGEST_ANGLE)
-    angle = description.sense * ANGLE_UNITS[unit] * given
+    readings = bounded(table, crank, LARGEST_ANGLE)
+    angle = description.sense * ANGLE_UNITS[unit] * readings
     if recording.crank_angle is None:
-        recording.crank_angle, recording.angle_unit = given, unit
+        recording.crank_angle, recording.angle_unit = readings, unit
     values = _values(description, table)
     joint_angle = _joint_angles(description, recording, table)
     after = angle + description.zero
@@ -183,7 +183,7 @@ def _values(description: Description, table: TextTable) -> FloatArray:
     """Knee and hip moment, N m, extension positive, or the two components of the pedal force, N; shape (2, n)."""
     scale = 1.0 if description.pedal_force else description.scale
     values = np.stack([bounded(table, column, LARGEST_MOMENT, scale) for column in _value_columns(description)])
-    sign = description.convention.moment.map(lambda said: said or 1.0)
+    sign = description.convention.moment.map(lambda declared: declared or 1.0)
     return values if description.pedal_force else np.array([*sign])[:, None] * values
 
 
@@ -207,9 +207,9 @@ def _joint_angles(description: Description, recording: Recording, table: TextTab
         column = description.columns[key]
         asked = key in description.section.content or (joint == "knee" and bool(description.kinematics))
         if asked or column in table.header:
-            given = table.column(column)
-            unit = "rad" if np.abs(given).max(initial=0.0) < _LARGEST_RADIANS else "deg"
-            radians = ANGLE_UNITS[unit] * given
+            readings = table.column(column)
+            unit = "rad" if np.abs(readings).max(initial=0.0) < _LARGEST_RADIANS else "deg"
+            radians = ANGLE_UNITS[unit] * readings
             if joint not in recording.angles:
                 sense = angle_sense(joint, radians, description.convention.angle[joint], description.measured_on)
                 low, high = np.degrees([radians.min(), radians.max()])
@@ -220,11 +220,11 @@ def _joint_angles(description: Description, recording: Recording, table: TextTab
 
 def _angle_unit(description: Description, table: TextTable) -> str:
     """Unit of the crank angle: as declared, otherwise as the header of an OpenSim file says, otherwise deg."""
-    said = table.angle_unit or "deg"
-    unit = description.section.choice("angle_unit", ANGLE_UNITS, said)
-    if table.angle_unit and unit != said:
+    header_unit = table.angle_unit or "deg"
+    unit = description.section.choice("angle_unit", ANGLE_UNITS, header_unit)
+    if table.angle_unit and unit != header_unit:
         raise InputError(
-            f"{table.path}: the header says that angles are in {said}, moments.angle_unit of "
+            f"{table.path}: the header says that angles are in {header_unit}, moments.angle_unit of "
             f"{description.section.path} says {unit}; correct one of them"
         )
     return unit

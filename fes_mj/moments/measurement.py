@@ -122,17 +122,19 @@ def _measurement(path: Path, recording: Recording) -> Measurement:
     if cadence is not None and not (recording.cadence_known and cadence_agrees(turns, measured_on.cadence)):
         measured_on = _at_cadence(path, measured_on, cadence)
     declared_sd = None
-    name, known = printable(path.stem), recording.cadence_known or cadence is not None
+    name, cadence_known = printable(path.stem), recording.cadence_known or cadence is not None
     if len(turns) > 1:
         rows = np.stack([turn_coefficients(turn) for turn in turns])
         weights = weights_on(measured_on)
         mean, covariance = mean_of(rows, [turn.source for turn in turns], weights)
         declared_sd = declared_power_sd(mean, measured_on, cadence is not None)
         covariance = with_power_sd(covariance, weights, declared_sd)
-        moments = replace(moments_of(mean, name), covariance=covariance, measured_on=measured_on, cadence_known=known)
+        moments = replace(
+            moments_of(mean, name), covariance=covariance, measured_on=measured_on, cadence_known=cadence_known
+        )
     else:
         (turn,) = turns
-        moments = JointMoments(name, turn.crank_angle, turn.knee, turn.hip, None, measured_on, known)
+        moments = JointMoments(name, turn.crank_angle, turn.knee, turn.hip, None, measured_on, cadence_known)
     compared = tuple(comparisons(replace(recording, turns=turns), moments, spikes))
     misreadings = tuple(comparison.misreading for comparison in compared if not comparison.agrees)
     return Measurement(tuple(turns), replace(moments, misreadings=misreadings), compared, declared_sd)

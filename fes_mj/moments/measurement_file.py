@@ -181,13 +181,13 @@ def read_tricycle(section: Section) -> ReferenceTricycle:
     section.choice("kind", ("trt",), "trt")
     rider, paper = section.section("rider"), PAPER_TRICYCLE.design
     linkage = read_values(section, "trt", "kind", "cadence_rpm", "rider", owner="linkage", partial=True)
-    own = replace(paper.with_linkage(**linkage), rider=read_rider(rider, "trt", paper.rider))
+    design = replace(paper.with_linkage(**linkage), rider=read_rider(rider, "trt", paper.rider))
     allowed = VARIABLES["cadence_rpm"]
-    cadence = own.linkage.cadence
+    cadence = design.linkage.cadence
     if "cadence_rpm" in section.content:
         cadence = section.number("cadence_rpm", allowed.low, allowed.high, allowed.allowed) * RPM
     try:
-        turning(replace(own, name=f"{section.path}: measured_on"))
+        turning(replace(design, name=f"{section.path}: measured_on"))
     except AssemblyError as error:
         raise InputError(f"{error}; moments cannot have been measured on it") from None
-    return ReferenceTricycle(own, cadence)
+    return ReferenceTricycle(design, cadence)

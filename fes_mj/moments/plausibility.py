@@ -31,17 +31,17 @@ def comparisons(recording: Recording, moments: JointMoments, spikes: int) -> lis
 
     moments: those that were made of the recording. spikes: samples that were left out.
     """
-    turns, said, declared = recording.turns, recording.convention, recording.measured_on
+    turns, convention, declared = recording.turns, recording.convention, recording.measured_on
     return [
         *_crank_unit(recording),
-        *(row for joint, counted in recording.angles.items() for row in counting(joint, counted, said)),
+        *(row for joint, counted in recording.angles.items() for row in counting(joint, counted, convention)),
         *curves(turns, declared, recording.crank_angle is not None),
         *_time(turns, declared, recording.cadence_known),
         Comparison(
             "spikes", "samples left out", f"{spikes}", "none expected", not spikes, "spikes, alone among others"
         ),
         *_moments(turns, moments),
-        *_powers(moments, said, recording.angles),
+        *_powers(moments, convention, recording.angles),
     ]
 
 
@@ -156,11 +156,11 @@ def _opening(turns: Sequence[Turn], joint: str) -> float:
     return jump / max(float(np.mean(ranges)), 1e-300) if jump > 2 * np.mean(others) else 0.0
 
 
-def _powers(moments: JointMoments, said: Convention, angles: dict[str, CountedAngle]) -> Iterator[Comparison]:
+def _powers(moments: JointMoments, convention: Convention, angles: dict[str, CountedAngle]) -> Iterator[Comparison]:
     """Who drives: the sum, and each joint."""
     power = moments.power_mean
     signs = "are signs, zero and sense of the crank angle as declared?"
-    if any(counted.sense.sign < 0 and said.moment.knee >= 0 for joint, counted in angles.items() if joint == "knee"):
+    if "knee" in angles and angles["knee"].sense.sign < 0 and convention.moment.knee >= 0:
         signs = "the knee's angle counts flexion positive: does its moment, too (convention rajagopal)?"
     yield Comparison(
         "negative_power", "mean power", f"{sum(power):.2f} W", "a rider drives", sum(power) >= 0,
@@ -172,7 +172,8 @@ def _powers(moments: JointMoments, said: Convention, angles: dict[str, CountedAn
     )  # fmt: skip
     yield Comparison(
         "hip_sign", "power of the hip", f"{power.hip:.2f} W",
-        "sign declared" if said.moment.hip else "sign not declared", bool(said.moment.hip) or power.hip >= 0,
+        "sign declared" if convention.moment.hip else "sign not declared",
+        bool(convention.moment.hip) or power.hip >= 0,
         "the hip brakes if its moment counts extension positive; say by moments.convention or moments.extension how it "
         "is counted (OpenSim's hip_flexion: flexion)",
     )  # fmt: skip

@@ -21,15 +21,15 @@ _TURN = np.radians(np.arange(360.0))
 _ADVICE = "was it on this tricycle, with this rider? Measure R1, R2, seat and legs again, or see --identify"
 
 
-def counting(joint: str, counted: CountedAngle, said: Convention) -> Iterator[Comparison]:
+def counting(joint: str, counted: CountedAngle, convention: Convention) -> Iterator[Comparison]:
     """How a joint's angle is counted, and in which unit."""
-    sign = said.angle[joint]
+    sign = convention.angle[joint]
     declared = {1.0: "declared extension positive", -1.0: "declared flexion positive"}.get(sign, "not declared")
     sense, (low, high) = counted.sense, counted.ends
-    found = f"{low:.0f} to {high:.0f} deg, {sense.words}"
-    usual = joint == "hip" or sense.sign > 0 or said.moment[joint] != 0
+    recorded = f"{low:.0f} to {high:.0f} deg, {sense.words}"
+    usual = joint == "hip" or sense.sign > 0 or convention.moment[joint] != 0
     yield Comparison(
-        f"{joint}_sense", f"{joint} angle counts", found, declared, sign == sense.sign or (not sign and usual),
+        f"{joint}_sense", f"{joint} angle counts", recorded, declared, sign == sense.sign or (not sign and usual),
         f"a {joint} has such angles in this sense only; say so by moments.convention (rajagopal and winter count knee "
         "flexion positive, gait2392 extension; they differ in the signs of the moments, too)",
     )  # fmt: skip
@@ -55,15 +55,16 @@ def curves(turns: Sequence[Turn], tricycle: ReferenceTricycle, crank_recorded: b
     """The recorded joint angles over the crank angle beside those of the tricycle."""
     pose = solve(tricycle.design, _TURN + tricycle.top_dead_centre).joint_angle
     for joint in JOINTS:
-        recorded, own = recorded_curve(turns, joint), np.degrees(pose[joint])
+        recorded, modelled = recorded_curve(turns, joint), np.degrees(pose[joint])
         if recorded is not None:
-            yield from _curve(joint, recorded, own, crank_recorded)
+            yield from _curve(joint, recorded, modelled, crank_recorded)
 
 
-def _curve(joint: str, recorded: FloatArray, own: FloatArray, crank_recorded: bool) -> Iterator[Comparison]:
+def _curve(joint: str, recorded: FloatArray, modelled: FloatArray, crank_recorded: bool) -> Iterator[Comparison]:
     """Range, offset, shape and place of a joint's recorded curve; both in deg, at _TURN."""
-    tilt = float(np.mean(recorded - own)) if joint == "hip" else 0.0  # of pelvis and trunk; nobody's knee is tilted
-    ends = [(float(curve.min()), float(curve.max())) for curve in (recorded, own)]
+    # of pelvis and trunk; nobody's knee is tilted
+    tilt = float(np.mean(recorded - modelled)) if joint == "hip" else 0.0
+    ends = [(float(curve.min()), float(curve.max())) for curve in (recorded, modelled)]
     words = [f"{low:.0f} to {high:.0f} deg" for low, high in ends]
     away = max(abs(one - tilt - other) for one, other in zip(*ends, strict=True))
     yield Comparison(
@@ -76,13 +77,13 @@ def _curve(joint: str, recorded: FloatArray, own: FloatArray, crank_recorded: bo
             abs(tilt) <= most, "are seat_angle and the direction of R1 right?",
         )  # fmt: skip
     if joint == "hip" or crank_recorded:
-        shape = float(np.sqrt(np.mean((recorded - tilt - own) ** 2)))
+        shape = float(np.sqrt(np.mean((recorded - tilt - modelled) ** 2)))
         yield Comparison(
             f"{joint}_curve", f"{joint} angle over the turn", f"{shape:.1f} deg from that of the tricycle (rms)",
             f"up to {ANGLE_ERROR:g} expected", shape <= ANGLE_ERROR, _ADVICE,
         )  # fmt: skip
     if joint == "knee" and crank_recorded:
-        bent = math.degrees(np.angle(np.exp(1j * (_phase(recorded) - _phase(own)))))
+        bent = math.degrees(np.angle(np.exp(1j * (_phase(recorded) - _phase(modelled)))))
         yield Comparison(
             "zero", "knee bent most", f"{bent:+.0f} deg after top dead centre", "declared at 0",
             abs(bent) <= _ZERO_ERROR, "are zero, leg and turning of the crank angle as declared?",

@@ -25,7 +25,7 @@ _SHOWN = 40  # letters of a bad cell
 _LEAST_ROWS = 10  # all with the same decimals, before a last one with fewer was cut off
 _KINDS = "fes_mj reads text tables, CSV (commas, semicolons, tabs or blanks) and OpenSim's .sto and .mot, and .c3d"
 # What other files must become first.
-_WAYS = {
+_ADVICE = {
     ".mat": "in MATLAB: writetable(struct2table(S), 'trial.csv')",
     ".xlsx": "save the sheet as CSV",
     ".xls": "save the sheet as CSV",
@@ -59,11 +59,11 @@ class TextTable:
         if name not in self.header:
             from difflib import get_close_matches
 
-            known = ", ".join(self.header) or "nothing"
+            names = ", ".join(self.header) or "nothing"
             near = get_close_matches(name.lower(), [column.lower() for column in self.header], 1)
             meant = [column for column in self.header if [column.lower()] == near]
             raise InputError(
-                f"{self.path}: line {self.start}: there is no column {name!r}; the header names {known}"
+                f"{self.path}: line {self.start}: there is no column {name!r}; the header names {names}"
                 + "".join(f"; is it {column!r}?" for column in meant)
             )
         if self.header.count(name) > 1:
@@ -80,8 +80,8 @@ class TextTable:
         value = _value(cell, self.decimal)
         if not np.isfinite(value):
             shown = cell if len(cell) <= _SHOWN else f"{cell[:_SHOWN]}..."
-            way = "; take rows without a measurement out, the curve bridges them" * (cell.lower() in ("", "nan"))
-            raise InputError(f"{self.path}: line {line}: {column} is {shown!r}; it must be a finite number{way}")
+            advice = "; take rows without a measurement out, the curve bridges them" * (cell.lower() in ("", "nan"))
+            raise InputError(f"{self.path}: line {line}: {column} is {shown!r}; it must be a finite number{advice}")
         return value
 
     def taken(self, rows: Collection[int]) -> "TextTable":
@@ -107,10 +107,10 @@ class TextTable:
         return "ms" if name and (name[2] or "").lower().startswith("m") else "s"
 
 
-def load_table(path: Path, what: str, wanted: Collection[str] = ()) -> TextTable:
+def load_table(path: Path, what: str, expected: Collection[str] = ()) -> TextTable:
     """A table of a text file; blank lines, and lines above and below its header that are none of it, are passed over.
 
-    wanted: columns; of several header lines the one counts that names most of them. Raises InputError naming file and
+    expected: columns; of several header lines the one counts that names most of them. Raises InputError naming file and
     line, for what is no text table with the way to one, and for a file that is not as long as it says.
     """
     if path.suffix.lower() == ".c3d":
@@ -126,7 +126,7 @@ def load_table(path: Path, what: str, wanted: Collection[str] = ()) -> TextTable
     cells = [(number, _cells(line, separator)) for number, line in enumerate(lines[end:], end + 1)]
     cells = [(number, row) for number, row in cells if any(row)]
     decimal = "." if separator == "," else ".,"
-    head, rows = _split(cells, decimal, wanted)
+    head, rows = _split(cells, decimal, expected)
     number, header = cells[head] if cells else (end + 1, [])
     for line, row in rows:
         if len(row) != len(header):
@@ -141,7 +141,7 @@ def _text(path: Path, what: str) -> str:
     """The text of a file: UTF-8, UTF-16 as spreadsheets write it, otherwise Western European."""
     data, suffix = read_bytes(path, what), path.suffix.lower()
     wide = data.startswith((b"\xff\xfe", b"\xfe\xff"))
-    if suffix in _WAYS or (b"\0" in data and not wide):
+    if suffix in _ADVICE or (b"\0" in data and not wide):
         _refuse_kind(path, suffix)
     try:
         return data.decode("utf-16" if wide else "utf-8-sig")
@@ -152,8 +152,8 @@ def _text(path: Path, what: str) -> str:
 
 
 def _refuse_kind(path: Path, suffix: str) -> NoReturn:
-    way = _WAYS.get(suffix, "export it as one of these")
-    raise InputError(f"{path}: this is no text table; {_KINDS}; {way}")
+    advice = _ADVICE.get(suffix, "export it as one of these")
+    raise InputError(f"{path}: this is no text table; {_KINDS}; {advice}")
 
 
 def _cells(line: str, separator: str) -> list[str]:
@@ -194,7 +194,7 @@ def _separator(lines: list[str]) -> str:
 NumberedCells = tuple[int, list[str]]
 
 
-def _split(cells: list[NumberedCells], decimal: str, wanted: Collection[str]) -> tuple[int, list[NumberedCells]]:
+def _split(cells: list[NumberedCells], decimal: str, expected: Collection[str]) -> tuple[int, list[NumberedCells]]:
     """Where the header is, and the rows below all lines of words (units, components) that follow it."""
     width = Counter(len(row) for _, row in cells).most_common(1)[0][0] if cells else 0
 
@@ -204,7 +204,7 @@ def _split(cells: list[NumberedCells], decimal: str, wanted: Collection[str]) ->
 
     first = next(filter(heads, range(len(cells))), 0)
     below = next((place for place in range(first + 1, len(cells)) if not heads(place)), len(cells))
-    head = max(range(first, max(below, first + 1)), key=lambda p: len({*cells[p][1]} & {*wanted}) if cells else 0)
+    head = max(range(first, max(below, first + 1)), key=lambda p: len({*cells[p][1]} & {*expected}) if cells else 0)
     return head, cells[below:]
 
 

@@ -37,8 +37,8 @@ class TorqueMap(Brief):
 
     def of(self, name: str) -> "TorqueMap":
         """The map of the leg that a name or its prefix (linkage.legs) belongs to: the left leg may have its own."""
-        own = self.moments.of_leg(name)
-        return self if own is self.moments else torque_map(own)
+        moments = self.moments.of_leg(name)
+        return self if moments is self.moments else torque_map(moments)
 
     @cached_property
     def table(self) -> PerJoint[FloatArray]:
@@ -70,8 +70,8 @@ class TorqueMap(Brief):
 
     def control(self, leg: Leg, timestep: float = 0.0) -> LegControl:
         """The moments of a leg by its state alone (TorqueSource.control)."""
-        own = self.of(leg.prefix)
-        knee_moment, hip_moment = own.feedback("knee"), own.feedback("hip")
+        torque = self.of(leg.prefix)
+        knee_moment, hip_moment = torque.feedback("knee"), torque.feedback("hip")
         return LegControl(
             lambda _, knee, hip, knee_rate, hip_rate: (knee_moment(knee, knee_rate), hip_moment(hip, hip_rate))
         )

@@ -64,9 +64,11 @@ class Anatomy:
 
         It leaves force and relative speed as they are: moment arms grow. A rider's shank reaches down to the pedal.
         """
-        theirs = {"thigh": rider.thigh, "shank": rider.shank - boot_height()}
-        own = {"thigh": self.thigh, "shank": self.shank}
-        scales = (sum(theirs[part] for part in along) / sum(own[part] for part in along) for along in self.segments)
+        of_rider = {"thigh": rider.thigh, "shank": rider.shank - boot_height()}
+        of_model = {"thigh": self.thigh, "shank": self.shank}
+        scales = (
+            sum(of_rider[part] for part in along) / sum(of_model[part] for part in along) for along in self.segments
+        )
         return np.stack([np.atleast_2d(scale) for scale in np.broadcast_arrays(*scales)])
 
     def in_range(self, flexion: Flexion) -> BoolArray:

@@ -116,18 +116,18 @@ class Candidates:
         total = self.covariance + spread @ np.swapaxes(spread, 1, 2)
         apart = values - self.explained - self.by_strength @ mean
         gain = np.swapaxes(np.linalg.solve(total, spread * deviation), 1, 2)
-        left = np.diag(deviation**2) - gain @ (spread * deviation)
-        spread_left = np.linalg.cholesky((left + np.swapaxes(left, 1, 2)) / 2)
-        changes = np.einsum("ngr,nr->ng", gain, apart) + np.einsum("ngh,dnh->dng", spread_left, scores)
+        remaining = np.diag(deviation**2) - gain @ (spread * deviation)
+        remaining_spread = np.linalg.cholesky((remaining + np.swapaxes(remaining, 1, 2)) / 2)
+        changes = np.einsum("ngr,nr->ng", gain, apart) + np.einsum("ngh,dnh->dng", remaining_spread, scores)
         possible = (mean + changes > 0).all(axis=-1)
         change = changes[possible.argmax(axis=0), np.arange(len(self.riders))]
         strengths = mean + change
         fits = apart - np.einsum("nrg,ng->nr", self.by_strength, change)
         joint = _log_density(fits, self.covariance) - np.sum((change / deviation) ** 2, axis=1) / 2
-        known = dict(self.riders.values) | dict(zip(STRENGTHS, strengths.T, strict=True))
+        quantities = dict(self.riders.values) | dict(zip(STRENGTHS, strengths.T, strict=True))
         with np.errstate(divide="ignore"):
             share = np.log(possible.mean(axis=0))
-        return replace(self.riders, values=known, likelihood=joint), _log_density(apart, total) + share
+        return replace(self.riders, values=quantities, likelihood=joint), _log_density(apart, total) + share
 
 
 def _seen(riders: Riders, measured: Measured) -> tuple[FloatArray, FloatArray]:
@@ -177,9 +177,9 @@ def weighed(
     quantities = [name for name in priors() if name not in STRENGTHS]
     centre, spread = np.zeros(len(quantities)), np.eye(len(quantities))
     for stage in range(STAGES):
-        own = random.standard_normal((count, len(quantities)))
-        there = centre + own @ np.linalg.cholesky(spread).T
-        scores = np.where(random.random((count, 1)) < _FROM_PRIOR, own, there) if stage else own
+        of_prior = random.standard_normal((count, len(quantities)))
+        there = centre + of_prior @ np.linalg.cholesky(spread).T
+        scores = np.where(random.random((count, 1)) < _FROM_PRIOR, of_prior, there) if stage else of_prior
         values = {name: quantile(name, column) for name, column in zip(quantities, scores.T, strict=True)}
         unit = {name: np.ones(count) for name in STRENGTHS}
         candidates = seen(Riders(name, unit | values, np.zeros(count)))

@@ -14,16 +14,16 @@ from fes_mj.muscles.timing import DUTY
 
 
 def gains(
-    riders: Riders, designs: Sequence[Design], base: Design, duty: float = DUTY, known: Riders | None = None
+    riders: Riders, designs: Sequence[Design], base: Design, duty: float = DUTY, actual: Riders | None = None
 ) -> FloatArray:
     """Mean power on each design per that on `base`, each stimulated as is best in expectation, (designs, members).
 
-    known: whose gains instead under the same stimulation; by default the riders' own.
+    actual: whose gains instead under the same stimulation; by default the riders' own.
     """
 
     def power(design: Design) -> FloatArray:
         turn, windows = best_turn(riders, design, duty=duty)
-        turn = muscle_turn(known, design, design.linkage.cadence, windows) if known else turn
+        turn = muscle_turn(actual, design, design.linkage.cadence, windows) if actual else turn
         return turn.power_mean[:, 0]
 
     return np.stack([power(design) for design in designs]) / power(base)
@@ -50,6 +50,6 @@ def held(
             100
         )
         low, high = np.quantile(gains(members, designs, base), ends, axis=1)
-        true = gains(members, designs, base, known=truth.riders.taken([row]))[:, 0]
+        true = gains(members, designs, base, actual=truth.riders.taken([row]))[:, 0]
         result[row] = (low <= true) & (true <= high)
     return result

@@ -125,8 +125,8 @@ def _read(path: Path) -> Riders:
         raise InputError(f"{path}: no ensemble of riders; {_WRITES}") from None
     sizes = {name: column.shape for name, column in columns.items() if name != "measured_on"}
     whole = len(set(sizes.values())) == 1 and columns["likelihood"].ndim == 1 and columns["likelihood"].size > 0
-    known = all(np.isfinite(column).all() for column in columns.values())
-    if not (whole and known and columns["measured_on"].shape == (len(_TRICYCLE) + 1,)):
+    finite = all(np.isfinite(column).all() for column in columns.values())
+    if not (whole and finite and columns["measured_on"].shape == (len(_TRICYCLE) + 1,)):
         raise InputError(f"{path}: an ensemble of riders with columns that do not fit each other; {_WRITES}")
     *numbers, cadence = map(float, columns["measured_on"])
     design = replaced(PAPER_TRICYCLE.design, dict(zip(_TRICYCLE, numbers, strict=True)))

@@ -50,8 +50,8 @@ class Windows:
 
     def by_group(self, member: int = 0) -> dict[str, list[float] | None]:
         """[on, off] of one of the members on the one design by group, deg; None where a group is not stimulated."""
-        own = self.of(member)
-        pairs = zip(own.on[:, 0, 0], own.width[:, 0, 0], strict=True)
+        windows = self.of(member)
+        pairs = zip(windows.on[:, 0, 0], windows.width[:, 0, 0], strict=True)
         ends = ([float(on), float((on + width) % 360)] if width else None for on, width in pairs)
         return dict(zip(MUSCLE_GROUPS, ends, strict=True))
 

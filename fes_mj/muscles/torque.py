@@ -67,8 +67,8 @@ class MuscleTorque(Brief):
 
     def activation(self, crank_angle: FloatArray) -> FloatArray:
         """Of each group at crank angles, rad, shape (groups, angles)."""
-        known = self._asked[0]
-        return np.stack([np.interp(crank_angle, known, group, period=2 * np.pi) for group in self._answer])
+        angles = self._asked[0]
+        return np.stack([np.interp(crank_angle, angles, group, period=2 * np.pi) for group in self._answer])
 
     def hidden(self, timestep: float) -> float:
         """Largest part of an activation that may lie between two angles of `activation`, or two steps of this time, s.
@@ -100,11 +100,11 @@ class MuscleTorque(Brief):
     @cached_property
     def _answer(self) -> FloatArray:
         """Activation at the same angles."""
-        turn, known = self.stimulated.turn, self.riders
+        turn, riders = self.stimulated.turn, self.riders
         start = np.zeros(len(MUSCLE_GROUPS)) if turn is None else turn.activation[:, 0, 0, 0]
         if self.stimulated.windows is None:
             return self._led.activation(start[:, None])[:, 0]
-        times = 2 * np.pi / self.cadence, known["rise_s"].item(), known.fall.item()
+        times = 2 * np.pi / self.cadence, riders["rise_s"].item(), riders.fall.item()
         return periodic_activation(self._asked[1], *times, start)
 
     @property

@@ -86,9 +86,9 @@ def explained_share(riders: Riders, moments: JointMoments) -> float:
     )
     mean_square = np.where(np.arange(2 * TERMS) % TERMS == 0, 1.0, 0.5)
     root = np.sqrt(residual**2 @ mean_square / 2)  # of both joints
-    left = missed - residual * np.minimum(1, size / root)[:, None]
+    unexplained = missed - residual * np.minimum(1, size / root)[:, None]
     varies = mean_square * (np.arange(2 * TERMS) % TERMS > 0)
-    return float(1 - np.median(left**2 @ mean_square) / (whole.values**2 @ varies))
+    return float(1 - np.median(unexplained**2 @ mean_square) / (whole.values**2 @ varies))
 
 
 def fit_muscles(
@@ -96,13 +96,13 @@ def fit_muscles(
 ) -> tuple[Riders, float]:
     """Riders who may have given a trial's moments, and the share of its variance that they explain.
 
-    candidates: by which the posterior is found (identify); steps: of every rider in it (chains.moved); advance: called
-    with the number of riders just looked at. Raises InputError as measured_moments, and where that share is below
-    LEAST_EXPLAINED.
+    candidates: by which the posterior is found (identify_riders); steps: of every rider in it (chains.moved); advance:
+    called with the number of riders just looked at. Raises InputError as measured_moments, and where that share is
+    below LEAST_EXPLAINED.
     """
     measured, random = measured_moments(moments), np.random.default_rng(seed)
-    found = identify_riders(measured, random, candidates, moments.name, advance).flattened().members(MEMBERS)
-    riders = moved(found, measured, random, steps, advance)
+    members = identify_riders(measured, random, candidates, moments.name, advance).flattened().members(MEMBERS)
+    riders = moved(members, measured, random, steps, advance)
     share = explained_share(riders, moments)
     if share < LEAST_EXPLAINED:
         raise InputError(

@@ -174,18 +174,18 @@ def motion_constraints(
     joint_speed: PerJoint[float],
     gear_ratios: tuple[float, float],
     ripple: float | None,
-    known: tuple[str, float],
+    inside_limit: tuple[str, float],
 ) -> tuple[Constraint, ...]:
     """Constraints on the turn, first those whose values are known at once; joint_speed in deg/s, as of Problem.
 
-    known: what the joints' angles have to lie in, and how far, deg.
+    inside_limit: what the joints' angles have to lie in, and how far, deg.
     """
     build = build_constraints(limits.build)
     return (
         Constraint("leg_reach", "m", True, LEAST_CLEARANCE, 0.01),
         *range_constraints(limits),
         *(Constraint(f"{joint}_speed", "deg/s", False, speed, 10.0) for joint, speed in joint_speed.items()),
-        *(Constraint(f"{joint}_{known[0]}", "deg", True, known[1], 5.0) for joint in JOINTS),
+        *(Constraint(f"{joint}_{inside_limit[0]}", "deg", True, inside_limit[1], 5.0) for joint in JOINTS),
         Constraint("gear_ratio_min", "", True, gear_ratios[0], 0.1),
         Constraint("gear_ratio", "", False, gear_ratios[1], 0.1),
         *build[:-2],
@@ -214,8 +214,8 @@ def length_values(design: Design, lengths: FloatArray, polygon: ComplexArray) ->
     pivots = (np.broadcast_to(point, (design.size, 1)).ravel() for point in (linkage.ground, linkage.crank_centre))
     inside = [depth_inside(polygon, points) for points in pivots]
     if linkage.kind == "trt":  # what a four-bar lacks keeps every limit
-        none, own = np.full(design.size, np.inf), room[:, _OF_FOUR_BAR].min(axis=1)
-        columns = [linkage.crank, none, linkage.foot, own, none, none, none, inside[1]]
+        none, of_four_bar = np.full(design.size, np.inf), room[:, _OF_FOUR_BAR].min(axis=1)
+        columns = [linkage.crank, none, linkage.foot, of_four_bar, none, none, none, inside[1]]
     else:
         others = np.min([np.abs(linkage.pivot_to_crank), linkage.coupler, linkage.rocker], axis=0)
         shortest, grashof = others - linkage.crank, grashof_margin(design)

@@ -32,7 +32,7 @@ class MomentDrive:
     baseline: FloatArray | float = 0.0
 
     proportional: ClassVar = True  # power to the gear ratio, which then follows from the joint speeds
-    known: ClassVar = ("overlap", 0.1)  # what the joints' angles lie in, and how far they must at least, deg
+    inside_limit: ClassVar = ("overlap", 0.1)  # what the joints' angles lie in, and how far they must at least, deg
 
     def inside(self, turn: Cycles) -> PerJoint[FloatArray]:
         """How far joints come into the range of the moments, from whichever side, deg, (designs,); 0 or less: never."""

@@ -169,9 +169,9 @@ def optimize(
     if smooth and method != "nsga-ii":
         raise InputError(f"smooth is an objective of its own, of nsga-ii; method is {method}")
     name = findings.name if findings else f"{kind}-{moments.name}"
-    own = problem.get("like") or problem.get("start")
+    origin = problem.get("like") or problem.get("start")
     start, repair = None, ""
-    if own and load_design(own).linkage.kind == kind:
+    if origin and load_design(origin).linkage.kind == kind:
         drawn = task.variables(task.template)
         start = drawn if task.evaluate(drawn[None]).feasible[0] else repaired(task, drawn, seed)
         repair = changes(drawn, start)

@@ -57,9 +57,9 @@ class People:
         """
         if not len(self.others):
             return design
-        own = design.rider.thigh + design.rider.shank
+        leg_length = design.rider.thigh + design.rider.shank
         pedal = np.broadcast_to(positions(design, SCAN)["pedal"], (len(moves), len(SCAN))).mean(axis=1)
-        shift = pedal[:, None] * (self.others.sum(axis=1) / own - 1)
+        shift = pedal[:, None] * (self.others.sum(axis=1) / leg_length - 1)
         moved = moves.reshape(len(moves), -1, 3) + np.stack([shift.real, -shift.imag, np.zeros(shift.shape)], axis=-1)
         low, high = (np.array(ends) for ends in zip(*SEAT_LIMITS, strict=True))
         seats = np.concatenate([np.zeros((len(moves), 1, 3)), np.clip(moved, low, high)], axis=1).reshape(-1, 3)

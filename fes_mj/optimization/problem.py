@@ -111,8 +111,8 @@ class Problem:
     @property
     def search(self) -> FloatArray:
         """Search ranges of the variables x: lengths, moves of the people's seats, gear ratio; shape (variables, 2)."""
-        own = self.limits.search
-        return np.vstack([own[:-1], self.people.search, own[-1:]])
+        ranges = self.limits.search
+        return np.vstack([ranges[:-1], self.people.search, ranges[-1:]])
 
     @property
     def varied(self) -> FloatArray:
@@ -128,7 +128,7 @@ class Problem:
     def motion(self) -> tuple[Constraint, ...]:
         """Constraints on the turn."""
         ripple = self.ripple.limit if self.ripple else None
-        return motion_constraints(self.limits, self.joint_speed, self.gear_ratios, ripple, self.drive.known)
+        return motion_constraints(self.limits, self.joint_speed, self.gear_ratios, ripple, self.drive.inside_limit)
 
     @property
     def gear_ratios(self) -> tuple[float, float]:
@@ -164,7 +164,8 @@ class Problem:
         gear_ratio = x[:, -1] if x.shape[1] == len(self.search) else np.ones(len(x))
         values, kind = np.column_stack([x[:, :LENGTH_COUNT], gear_ratio]).T[..., None], self.template.linkage.kind
         pairs = zip(VARIED, values, strict=True)
-        return replaced(self.template, {name: own for name, own in pairs if kind in COMPONENTS[name].variable.kinds})
+        kept = {name: value for name, value in pairs if kind in COMPONENTS[name].variable.kinds}
+        return replaced(self.template, kept)
 
     def design(self, x: FloatArray, name: str) -> Design:
         """One design, with the template's rider, from its variables, shape (variables,)."""
@@ -278,23 +279,23 @@ def make_problem(
     if like and (start or compared_with != "trt"):
         raise InputError("like takes the place of start and compared_with; leave these out")
     compared_with, start = like or compared_with, like or start
-    own = load_design(start or compared_with)
+    base = load_design(start or compared_with)
     template = load_design(KINDS[kind])
-    if own.linkage.kind == kind and start:
-        template = own
+    if base.linkage.kind == kind and start:
+        template = base
     elif start and not like:
-        raise InputError(f"start is {start}, a {own.linkage.kind}, not a {kind}; start from a design of that kind")
+        raise InputError(f"start is {start}, a {base.linkage.kind}, not a {kind}; start from a design of that kind")
     elif like or compared_with not in DESIGNS:
-        template = replace(template, rider=own.rider).with_linkage(seat_angle=own.linkage.seat_angle)
-    known = load_limits(limits, build)
+        template = replace(template, rider=base.rider).with_linkage(seat_angle=base.linkage.seat_angle)
+    allowed = load_limits(limits, build)
     pivots = [template.linkage.ground, template.linkage.crank_centre]
-    if limits == DEFAULT and depth_inside(known.polygon, np.array(pivots)).min() < 0:
-        known = known.holding(pivots, PIVOT_ROOM)
+    if limits == DEFAULT and depth_inside(allowed.polygon, np.array(pivots)).min() < 0:
+        allowed = allowed.holding(pivots, PIVOT_ROOM)
     if like:
-        known = replace(known, gear_ratio_max=own.linkage.gear_ratio)
+        allowed = replace(allowed, gear_ratio_max=base.linkage.gear_ratio)
     if kind == "trt":
         absent = [kind not in COMPONENTS[name].variable.kinds for name in VARIED]
-        known = replace(known, search=np.where(np.array(absent)[:, None], 0.0, known.search))
+        allowed = replace(allowed, search=np.where(np.array(absent)[:, None], 0.0, allowed.search))
     other, table = load_design(compared_with), uncertain_table(moments) if caution else WorkTable.of(moments)
     # a hair above, so that the design itself is within its own limits
     speeds, asked = joint_speeds(other, table).map(lambda speed: speed * (1 + 1e-9)), PerJoint(knee_speed, hip_speed)
@@ -303,4 +304,4 @@ def make_problem(
     if muscles and (caution or ripple):
         raise InputError("caution and the limit on the ripple are for joint moments; muscles have neither")
     even = None if ripple is None else RippleLimit(ripple, moments)
-    return Problem(template, table, known, speed, muscles or MomentDrive(moments, caution, baseline), people, even)
+    return Problem(template, table, allowed, speed, muscles or MomentDrive(moments, caution, baseline), people, even)

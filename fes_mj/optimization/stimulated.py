@@ -32,7 +32,7 @@ class MuscleDrive:
     duty: float = DUTY
 
     proportional: ClassVar = False  # as of MomentDrive
-    known: ClassVar = ("muscles", 0.0)
+    inside_limit: ClassVar = ("muscles", 0.0)
 
     def __post_init__(self) -> None:
         """Raises InputError for a duty that is none."""
@@ -58,11 +58,11 @@ class MuscleDrive:
 
     def inside(self, turn: Cycles) -> PerJoint[FloatArray]:
         """How far each joint stays within the angles for which the lengths of muscles are known, deg, (designs,)."""
-        known, offset = anatomy(), self.riders.values["hip_offset_deg"]
+        muscles, offset = anatomy(), self.riders.values["hip_offset_deg"]
         shifts = {"knee": (0.0, 0.0), "hip": (float(offset.min()), float(offset.max()))}
 
         def margin(joint: str) -> FloatArray:
-            (low, high), (least, most) = getattr(known, f"{joint}_deg"), shifts[joint]
+            (low, high), (least, most) = getattr(muscles, f"{joint}_deg"), shifts[joint]
             flexed, stretched = (180 - np.degrees(end) for end in (turn.joints[joint].low, turn.joints[joint].high))
             return np.asarray(np.minimum(stretched + least - low, high - (flexed + most)))
 

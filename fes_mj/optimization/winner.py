@@ -151,16 +151,16 @@ class Winner(Assessed):
 def assess(design: Design, compared_with: Design, moments: JointMoments, seed: int = 0) -> Winner:
     """Simulate a design against statics, compare it with another at that one's cadence, sample tolerances."""
     table, random = WorkTable.of(moments), np.random.default_rng(seed)
-    own, other = quasi_static(design, moments), quasi_static(compared_with, moments)
-    deviation = difference_sd(own, other)
+    turn, other = quasi_static(design, moments), quasi_static(compared_with, moments)
+    deviation = difference_sd(turn, other)
     return Winner(
         case=Case(design, moments),
         compared_with=other,
         joint_speed=joint_speeds(design, table),
         reversals=cycles(design, table).joints.map(lambda joint: int(joint.reversals[0])),
         ripple=steady_ripple(Ride(design, moments, transmission="fixed")),
-        gain=None if deviation is None else Gain(own.power_mean - other.power_mean, deviation),
+        gain=None if deviation is None else Gain(turn.power_mean - other.power_mean, deviation),
         manufacturing=to_manufacturing(design, table, random),
         rider=to_rider(design, table, random),
-        build=Buildability.of(own),
+        build=Buildability.of(turn),
     )

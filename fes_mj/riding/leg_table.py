@@ -108,11 +108,11 @@ def _legs(design: Design, drive: JointMoments | StimulatedRider, cells: int) -> 
     masses = CrankInertia(*map(all_legs, crank_inertia(motion)))
     rate = _by_driven(dict.fromkeys(TWO_LEGS, motion.joint_rate))
     if isinstance(drive, JointMoments):
-        own = {leg: drive.of_leg(leg.prefix) for leg in TWO_LEGS}
-        moment, muscles = _by_driven({leg: driven(motion, moments) for leg, moments in own.items()}), NO_MUSCLES
+        by_leg = {leg: drive.of_leg(leg.prefix) for leg in TWO_LEGS}
+        moment, muscles = _by_driven({leg: driven(motion, moments) for leg, moments in by_leg.items()}), NO_MUSCLES
         push = (rate * moment).sum(axis=0)
         pulls = push[None]
-        broken = np.logical_or(*(delayed(breaks(motion, own[leg].measured_on), leg.lag) for leg in TWO_LEGS))
+        broken = np.logical_or(*(delayed(breaks(motion, by_leg[leg].measured_on), leg.lag) for leg in TWO_LEGS))
     else:
         moment, muscles, broken = np.zeros((0, cells)), muscle_table(drive.riders, motion), np.zeros(cells, bool)
         angle = kinematics.uniform_turn(REST_POINTS)

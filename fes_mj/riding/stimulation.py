@@ -108,9 +108,9 @@ def stimulation(design: Design, legs: int = 2) -> list[Window]:
     rate = kinematics.solve(design, angle).joint_rate
     windows = []
     for name, muscle in MUSCLES.items():
-        own = [_window(name, muscle, angle, rate, *ends) for ends in _positive(muscle.sense * rate[muscle.joint])]
-        least = LEAST_SWING * sum(window.swing for window in own)
-        worth = [window for window in own if window.swing >= least]
+        of_muscle = [_window(name, muscle, angle, rate, *ends) for ends in _positive(muscle.sense * rate[muscle.joint])]
+        least = LEAST_SWING * sum(window.swing for window in of_muscle)
+        worth = [window for window in of_muscle if window.swing >= least]
         windows += [window.of(leg) for leg in TWO_LEGS[: len(LEGS[legs])] for window in worth]
     return windows
 

@@ -70,11 +70,11 @@ def outside_known(trace: Trace) -> list[str]:
     for joint in JOINTS:
         rates = [ride.table.joint_rate[row] for row, driven in enumerate(DRIVEN) if driven[1] == joint]
         angle, speed = trace.crank_angle[part] % (2 * np.pi), np.abs(trace.crank_speed[part])
-        own = max(float((speed * np.abs(np.interp(angle, turn, rate))).max()) for rate in rates)
+        fastest = max(float((speed * np.abs(np.interp(angle, turn, rate))).max()) for rate in rates)
         reference = ride.drive.measured_on
         measured = reference.cadence * float(np.abs(reference.joint_rates(turn)[joint]).max())
-        if own > FASTEST_JOINTS * measured:
-            beyond.append(f"the {joint} at {own / measured:.1f} times the fastest that was measured")
+        if fastest > FASTEST_JOINTS * measured:
+            beyond.append(f"the {joint} at {fastest / measured:.1f} times the fastest that was measured")
     return beyond
 
 

@@ -89,15 +89,15 @@ def sidecar_text(design: Design, drive: Drive, cadence: float | None = None, leg
     columns = {"crank_angle_deg": np.degrees(angle), FROM_TOP: turning(design).degrees_from_top(angle)}
     massive, massless = np.zeros((2, SIDECAR_ROWS))
     for leg in LEGS[legs]:
-        motion, own = kinematics.solve(design, angle - leg.lag), torque.of(leg.prefix)
-        moment = own.along(motion, cadence)
+        motion, leg_torque = kinematics.solve(design, angle - leg.lag), torque.of(leg.prefix)
+        moment = leg_torque.along(motion, cadence)
         for joint, angles in motion.joint_angle.items():
             columns[f"{leg.prefix}{joint}_deg"] = np.degrees(angles)
             columns[f"{leg.prefix}{joint}_Nm"] = moment[joint]
         for muscle, activation in (native.activation(angle - leg.lag) if native else {}).items():
             columns[f"{leg.prefix}{muscle}_activation"] = activation
-        massive += crank_moment(motion, own, cadence)
-        massless += crank_moment(motion, own, cadence, mass_scale=0.0)
+        massive += crank_moment(motion, leg_torque, cadence)
+        massless += crank_moment(motion, leg_torque, cadence, mass_scale=0.0)
     return csv_text(columns | {"crank_Nm": massive, "quasi_static_crank_Nm": massless})
 
 

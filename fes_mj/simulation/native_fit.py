@@ -101,13 +101,13 @@ class MuscleCurves(NamedTuple):
         """By least squares at these lengths and speeds, and the root mean square of what is left of the force."""
         from scipy.optimize import least_squares
 
-        wanted, _ = tension(length, speed, **fibre)
+        target, _ = tension(length, speed, **fibre)
         optimal = fibre["optimal"] * math.cos(fibre["pennation"])
         relative, fastest = (length - fibre["slack"]) / optimal, speed / (optimal * fibre["max_speed"])
 
         def missed(numbers: FloatArray) -> FloatArray:
             of = cls(*numbers)
-            return np.asarray(of.force * native_curve(relative, fastest / of.speed, of.width, of.plateau) - wanted)
+            return np.asarray(of.force * native_curve(relative, fastest / of.speed, of.width, of.plateau) - target)
 
         low, high = zip(*LIMITS, strict=True)
         fit = least_squares(missed, (1.0, 0.7, 0.5, PLATEAU), bounds=(low, high))

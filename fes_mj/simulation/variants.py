@@ -47,13 +47,13 @@ RANGE_STEP = 5.0  # N m, to which ranges are rounded up
 def variant_options(variants: Iterable[str]) -> dict[str, Any]:
     """What a combination of variants sets. Raises InputError for unknown ones and for those that make no sense."""
     options: dict[str, Any] = {}
-    said: dict[str, str] = {}
+    variant_of: dict[str, str] = {}
     for name in variants:
         require_one_of("variant", name, VARIANTS)
         for key, value in VARIANTS[name].items():
             if options.setdefault(key, value) != value:
-                raise InputError(f"the variants {said[key]} and {name} exclude each other; give one of them")
-            said.setdefault(key, name)
+                raise InputError(f"the variants {variant_of[key]} and {name} exclude each other; give one of them")
+            variant_of.setdefault(key, name)
     if "transmission" in options and options.get("crank") != "road":
         raise InputError("the variant fixed-gear is about the tricycle on the road; give it with ride")
     return options

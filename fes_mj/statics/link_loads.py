@@ -65,13 +65,15 @@ class LinkLoads:
         """
         joints, direction = self.motion.design.linkage.architecture.joints, self.motion.direction(plate.body)
         for name, case in (("riding", self.riding), ("pushed", self.pushed)):
-            own = {
+            forces = {
                 joint: (1 if joints[joint][1] == plate.body else -1) * case[joint] * np.conj(direction)
                 for joint, _, _ in plate.holes
             }
             for along, arm in _arms(plate):
                 for number, start in enumerate([plate.holes[0], *arm[:-1]]):
-                    beyond = [(own[hole.joint], hole.place - start.place, levers[hole.joint]) for hole in arm[number:]]
+                    beyond = [
+                        (forces[hole.joint], hole.place - start.place, levers[hole.joint]) for hole in arm[number:]
+                    ]
                     pull = np.sum([(force * np.conj(along)).real for force, _, _ in beyond], axis=0)
                     bending = np.sum([(np.conj(reach) * force).imag for force, reach, _ in beyond], axis=0)
                     across = np.sum([lever * np.abs(force) for force, _, lever in beyond], axis=0)

@@ -72,7 +72,7 @@ def build(turn: QuasiStatic, of: str = "aluminium", safety: float = YIELD_SAFETY
             refusals.append(error)
     if not builds:
         raise refusals[-1]
-    return min(builds, key=lambda made: sum(made.mass.values()))
+    return min(builds, key=lambda candidate: sum(candidate.mass.values()))
 
 
 def _sized(turn: QuasiStatic, chosen: Material, safety: float, thickness: float) -> Build:
@@ -85,12 +85,12 @@ def _sized(turn: QuasiStatic, chosen: Material, safety: float, thickness: float)
         plates = {body: _plate(design, body, pins, width, thickness) for body, width in widths.items()}
         layers = stack(Side(design, plates, pins))
         masses = tuple((body, plate.inertia(chosen.density)) for body, plate in plates.items())
-        made = replace(turn, motion=replace(turn.motion, design=replace(design, links=masses)))
-        loads = LinkLoads.of(made)
+        with_masses = replace(turn, motion=replace(turn.motion, design=replace(design, links=masses)))
+        loads = LinkLoads.of(with_masses)
         larger = {joint: _pin(joint, loads, layers, safety) for joint in pins}
         wider = {body: _width(plate, loads, layers, chosen, safety) for body, plate in plates.items()}
         if (larger, wider) == (pins, widths):
-            return Build(made, chosen, layers, loads)
+            return Build(with_masses, chosen, layers, loads)
         pins, widths = larger, wider
 
 

@@ -236,8 +236,8 @@ class LegTurns:
         cls, design: Design, moments: JointMoments, cadence: float, legs: int = 1, points: int | None = None
     ) -> "LegTurns":
         """Solve so many legs at a cadence in rad/s. Raises InputError as quasi_static."""
-        own = moments.of_legs[:legs]
-        return cls(tuple(quasi_static(design, leg, cadence, points) for leg in own), legs)
+        of_legs = moments.of_legs[:legs]
+        return cls(tuple(quasi_static(design, leg, cadence, points) for leg in of_legs), legs)
 
     @property
     def first(self) -> QuasiStatic:

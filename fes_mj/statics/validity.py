@@ -72,8 +72,8 @@ def _joints_without_data(turn: Turning, reference: ReferenceTricycle) -> list[st
     for joint, angle in angles.items():
         if outside[joint]:
             ends = (angle.min(), angle.max()), reference.ranges[joint]
-            own, known = (f"{low:.1f} to {high:.1f} deg" for low, high in np.degrees(ends))
-            never.append(f"the {joint} moves from {own}, the moments are known from {known}")
+            moved, measured = (f"{low:.1f} to {high:.1f} deg" for low, high in np.degrees(ends))
+            never.append(f"the {joint} moves from {moved}, the moments are known from {measured}")
     return never
 
 
@@ -91,8 +91,8 @@ def _likely_cause(design: Design, reference: ReferenceTricycle) -> str:
 
 def _other_seat(design: Design, turn: Turning, reference: ReferenceTricycle) -> str:
     """The seat angle with which the hip swings in the middle of its range; nothing where the knee is outside too."""
-    swing, known = turn.motion.joint_angle.hip, reference.ranges.hip
-    seat = np.round(np.degrees(design.linkage.seat_angle + (swing.min() + swing.max() - sum(known)) / 2))
+    swing, measured = turn.motion.joint_angle.hip, reference.ranges.hip
+    seat = np.round(np.degrees(design.linkage.seat_angle + (swing.min() + swing.max() - sum(measured)) / 2))
     other = turning(design.with_linkage(seat_angle=float(np.radians(seat))))
     return "" if _joints_without_data(other, reference) else f". With another seat it does: seat_angle = {seat:g}"
 

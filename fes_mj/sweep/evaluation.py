@@ -79,8 +79,10 @@ def evaluate(study: Study, chunk: int) -> Columns:
             if rows.size:
                 values = {variable: column[rows] for variable, column in varied.items()}
                 batch = replaced(design, {variable: column[:, None] for variable, column in values.items()})
-                given = values.get("cadence_rpm")
-                rpm = np.broadcast_to(np.ravel(batch.linkage.cadence) / RPM if given is None else given, rows.shape)
+                chosen_rpm = values.get("cadence_rpm")
+                rpm = np.broadcast_to(
+                    np.ravel(batch.linkage.cadence) / RPM if chosen_rpm is None else chosen_rpm, rows.shape
+                )
                 results = _static(batch, rpm, moments)
                 drive = study.muscles[name] if study.muscles else moments
                 if isinstance(drive, Muscles):
@@ -88,7 +90,7 @@ def evaluate(study: Study, chunk: int) -> Columns:
                 elif study.characteristics:
                     results |= _characteristics(batch, rpm, drive, study.legs, results["why"])
                 if study.analysis == "dynamic":
-                    results |= _dynamic(batch, given, drive, study, results["why"])
+                    results |= _dynamic(batch, chosen_rpm, drive, study, results["why"])
                 for key, column in results.items():
                     columns[key][rows] = column
     columns["why"][columns["why"] == ""] = None

@@ -19,8 +19,8 @@ POWER = "mean crank power, W"
 def write_plot(sweep: Sweep, path: Path) -> None:
     """Write a PNG with the power of all finished points: lines over one number, or a map over two."""
     numbers = sweep.study.varied_numbers
-    wanted = [*NAMES, *numbers, "power_mean_W", "power_sd_W"]
-    columns = {name: column.to_numpy() for name, column in zip(wanted, sweep.read(wanted).columns, strict=True)}
+    names = [*NAMES, *numbers, "power_mean_W", "power_sd_W"]
+    columns = {name: column.to_numpy() for name, column in zip(names, sweep.read(names).columns, strict=True)}
     with mpl.rc_context(STYLE), replacing(path) as temporary:
         figure = Figure(figsize=(6.4, 4.4), layout="constrained")
         axes = figure.subplots()

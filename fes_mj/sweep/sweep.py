@@ -131,8 +131,8 @@ class Sweep(Brief):
         """
         arrow, parquet = require_extra("optimize", "pyarrow"), require_extra("optimize", "pyarrow.parquet")
         self.claim()
-        known = {*(self.finished() if finished is None else finished)}
-        missing = [chunk for chunk in range(self.study.chunks) if chunk not in known]
+        present = {*(self.finished() if finished is None else finished)}
+        missing = [chunk for chunk in range(self.study.chunks) if chunk not in present]
         for chunk in missing:
             require_writable(self.path(chunk), "a chunk")
         for index, columns in run_tasks(partial(evaluate, self.study), missing, workers):

@@ -120,12 +120,12 @@ def power_per_able_bodied(riders: Riders, setup: CrankingSetup) -> FloatArray:
     stimulated = _with_strength(riders, setup["strength"])
     slow = {"rise_s": riders.values["rise_s"] * setup["able_bodied_rise"], "delay_s": np.zeros(len(riders))}
     able = _with_strength(Riders(riders.name, dict(riders.values) | slow, riders.likelihood), 1.0)
-    theirs = [
+    of_able_bodied = [
         best_turn(able, TRICYCLE, rpm * RPM, duty=1.0, each_its_own=True)[0].power_mean[:, 0]
         for rpm in setup["able_bodied_rpm"]
     ]
-    own = _cranked(stimulated, setup, setup["cadence_rpm"][0]).power_mean[:, 0]
-    return np.asarray(100 * own / np.max(theirs, axis=0))
+    of_stimulated = _cranked(stimulated, setup, setup["cadence_rpm"][0]).power_mean[:, 0]
+    return np.asarray(100 * of_stimulated / np.max(of_able_bodied, axis=0))
 
 
 def advance(riders: Riders, setup: CrankingSetup) -> FloatArray:

@@ -88,18 +88,18 @@ class PublishedRow:
 
 def prediction(name: str) -> Prediction:
     """The function of this name."""
-    found: Prediction = next(getattr(module, name) for module in _MODULES if hasattr(module, name))
-    return found
+    function: Prediction = next(getattr(module, name) for module in _MODULES if hasattr(module, name))
+    return function
 
 
 @cache
 def rows() -> tuple[PublishedRow, ...]:
     """All of the file, measurements first."""
-    found = [PublishedRow(content) for content in read_toml(PUBLISHED_FILE, "published measurements").content["row"]]
-    return tuple(sorted(found, key=lambda row: row.content["kind"] != "measurement"))
+    unsorted = [PublishedRow(content) for content in read_toml(PUBLISHED_FILE, "published measurements").content["row"]]
+    return tuple(sorted(unsorted, key=lambda row: row.content["kind"] != "measurement"))
 
 
 def counts(records: list[dict[str, Any]]) -> dict[str, int]:
     """How many measurements have each verdict."""
-    said = [record["verdict"] for record in records if record["kind"] == "measurement"]
-    return {verdict: said.count(verdict) for verdict in VERDICTS}
+    verdicts = [record["verdict"] for record in records if record["kind"] == "measurement"]
+    return {verdict: verdicts.count(verdict) for verdict in VERDICTS}

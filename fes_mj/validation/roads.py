@@ -29,8 +29,8 @@ def speed(riders: Riders, setup: CrankingSetup) -> FloatArray:
     for speed in _SPEEDS * KMH:
         cadence = speed / ride.travel
         turn, _ = best_turn(riders, TRICYCLE, cadence)
-        left = power_over_time(turn, np.array([60 * setup["minutes"]]))[0, :, 0]
-        surplus.append(2 * left - (ride.load.rolling + ride.load.drag * speed**2) * speed)
+        power = power_over_time(turn, np.array([60 * setup["minutes"]]))[0, :, 0]
+        surplus.append(2 * power - (ride.load.rolling + ride.load.drag * speed**2) * speed)
     left_over = np.array(surplus)
     last = len(_SPEEDS) - 2 - (left_over[:-1] > 0)[::-1].argmax(axis=0)  # beyond it there is none left
     rows = np.arange(len(riders))

@@ -97,21 +97,22 @@ def file_error(path: Path, motion: Motion) -> float:
     """Largest difference between a number of a design file and the same measured on a linkage, m, rad or a ratio."""
     content, measured = tomllib.loads(path.read_text(encoding="utf-8")), measure(motion)
     rider = content.get("rider", {})
-    given = content["linkage"] | (rider if isinstance(rider, dict) else {})  # a rider with a name is in no design file
+    # a rider with a name is in no design file
+    written = content["linkage"] | (rider if isinstance(rider, dict) else {})
     # of an arm that is shorter than any link its direction is known no better than its end
     weights = {"gamma": np.minimum(1.0, np.abs(measured["R8"]) / SHORTEST)} if "gamma" in measured else {}
     errors = [
-        np.abs(_difference(key, given[key], measured[key]) * weights.get(key, 1.0)).max()
-        for key in given
+        np.abs(_difference(key, written[key], measured[key]) * weights.get(key, 1.0)).max()
+        for key in written
         if key in measured
     ]
     return float(np.max(errors))  # by NumPy, whose largest of a NaN and a number is the NaN
 
 
-def _difference(key: str, given: Any, measured: Any) -> Any:
+def _difference(key: str, written: Any, measured: Any) -> Any:
     if key in ANGLE_KEYS:
-        return np.angle(np.exp(1j * (measured - given * math.pi / 180)))
-    return measured - (complex(*given) if isinstance(given, list) else given)
+        return np.angle(np.exp(1j * (measured - written * math.pi / 180)))
+    return measured - (complex(*written) if isinstance(written, list) else written)
 
 
 def measure(motion: Motion) -> dict[str, ComplexArray | FloatArray]:

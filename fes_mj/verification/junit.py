@@ -11,15 +11,15 @@ def junit_xml(checks: Sequence[Check], detections: Sequence[Detection] = ()) -> 
     """One test suite a subject, one test case a check; injected faults that nobody caught are failures too."""
     root = ElementTree.Element("testsuites", name="fes_mj validate")
     for subject in dict.fromkeys(check.subject for check in checks):
-        own = [check for check in checks if check.subject == subject]
-        suite = _suite(root, subject, len(own), sum(not check.ok for check in own))
-        for check in own:
+        of_subject = [check for check in checks if check.subject == subject]
+        suite = _suite(root, subject, len(of_subject), sum(not check.ok for check in of_subject))
+        for check in of_subject:
             case = ElementTree.SubElement(suite, "testcase", classname=subject, name=check.name)
             text = f"{check.value:g} {check.unit} (limit {check.limit:g} {check.unit})"
             if not check.ok:
                 failure = ElementTree.SubElement(case, "failure", message=text)
-                known = definitions()[check.name]
-                failure.text = f"{known.guards} Usually broken by: {known.breaks}"
+                definition = definitions()[check.name]
+                failure.text = f"{definition.guards} Usually broken by: {definition.breaks}"
             ElementTree.SubElement(case, "system-out").text = text
     if detections:
         suite = _suite(root, "injected faults", len(detections), sum(not detection.caught for detection in detections))

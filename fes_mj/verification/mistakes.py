@@ -116,8 +116,8 @@ def from_horizontal(torque: TorqueMap) -> PerJoint[FloatArray]:
 
 
 def open_table(torque: TorqueMap) -> PerJoint[FloatArray]:
-    known, pair = torque.moments.crank_angle, PerJoint(torque.moments.knee, torque.moments.hip)
-    return pair.map(lambda moment: np.interp(GRID, known, moment))
+    angles, pair = torque.moments.crank_angle, PerJoint(torque.moments.knee, torque.moments.hip)
+    return pair.map(lambda moment: np.interp(GRID, angles, moment))
 
 
 class LateFeedback(TorqueMap):

@@ -61,8 +61,8 @@ def map_error(torque: TorqueMap) -> float:
     """On its own tricycle the map must give the moments back, at every 0.1 deg of crank angle, N m."""
     after, reference = GRID[:TABLE_SIZE], torque.moments.measured_on  # from top dead centre
     motion = kinematics.solve(reference.design, reference.top_dead_centre + after)
-    given, mapped = torque.moments.at(after), torque.along(motion, reference.cadence)
-    return max(float(np.abs(mapped[joint] - given[joint]).max()) for joint in JOINTS)
+    measured, mapped = torque.moments.at(after), torque.along(motion, reference.cadence)
+    return max(float(np.abs(mapped[joint] - measured[joint]).max()) for joint in JOINTS)
 
 
 def model_checks(case: Case) -> Iterator[Check]:

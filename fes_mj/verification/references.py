@@ -77,8 +77,8 @@ def massless_difference(case: Case) -> float:
     """Largest difference over the turn between the two inverse dynamics of a leg almost without masses, N m."""
     motion = case.steps.motion(EVERY_DEGREE)
     mujoco = mujoco_inverse(case, motion, case.steps.joint_moment(motion), NEARLY_MASSLESS)
-    own = case.steps.crank_moment(motion, NEARLY_MASSLESS.mass_scale, NEARLY_MASSLESS.gravity)
-    return float(np.abs(mujoco - own).max())
+    computed = case.steps.crank_moment(motion, NEARLY_MASSLESS.mass_scale, NEARLY_MASSLESS.gravity)
+    return float(np.abs(mujoco - computed).max())
 
 
 def exact_checks(case: Case) -> Iterator[Check]:

@@ -56,8 +56,8 @@ def report_html(
 
 def for_a_rider(case: VerificationCase) -> tuple[str, str]:
     """Power of the drive's riders, W, and per the equally timed TRT's; of own moments no muscles are known."""
-    own = case.cadence == case.design.linkage.cadence
-    both = answer(case.design, riders=riders_of(case.drive), cadence=None if own else case.cadence)
+    own_cadence = case.cadence == case.design.linkage.cadence
+    both = answer(case.design, riders=riders_of(case.drive), cadence=None if own_cadence else case.cadence)
     power, ratio = both.rider_power, both.rider_ratio
     return power.text(1) if power else "not known", ratio.text(2) if ratio else "not known"
 

@@ -11,7 +11,7 @@ DESIGNS = [load_design(name) for name in ("r1", "r2", "d1", "d2")]
 def test_gains_are_one_for_the_base_itself(riders):
     trt = load_design("trt")
     assert gains(riders, [trt], trt) == pytest.approx(np.ones((1, len(riders))))
-    known = gains(riders, DESIGNS[2:3], trt, known=riders.taken([3]))
+    known = gains(riders, DESIGNS[2:3], trt, actual=riders.taken([3]))
     assert known[0, 0] == pytest.approx(gains(riders, DESIGNS[2:3], trt)[0, 3])
 
 

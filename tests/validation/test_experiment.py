@@ -90,6 +90,6 @@ def test_riders_who_are_known_are_recovered(written):
         known = riders(1, seed)
         members = identified(asked(plan, known, random), candidates=300).members(100)
         low, high = np.quantile(gains(members, [d1], trt)[0], (0.05, 0.95))
-        held.append(low <= gains(members, [d1], trt, known=known)[0, 0] <= high)
+        held.append(low <= gains(members, [d1], trt, actual=known)[0, 0] <= high)
         assert high - low < 0.8 * prior
     assert sum(held) >= 2  # 97 % probable if the intervals are right
