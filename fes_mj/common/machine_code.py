@@ -33,9 +33,25 @@ def kept_machine_code(function: Function) -> Function:
     takes a last argument with the default `sources(...)`, which is a part of the key under which numba keeps it.
     """
     try:
-        return _njit(function, cache=True)
+        kept = _njit(function, cache=True)
     except RuntimeError:  # nowhere to write to: made anew by every process
         return _njit(function)
+    if COMPILED:
+        _forget_what_is_gone(cast("Any", kept)._cache)
+    return kept
+
+
+def _forget_what_is_gone(cache: Any) -> None:
+    """What another version kept names its named tuples; where one of them is gone, nothing kept can be read."""
+    load = cache.load_overload
+
+    def load_or_forget(*signature: Any) -> Any:
+        try:
+            return load(*signature)
+        except (AttributeError, ImportError):
+            return cache.flush()
+
+    cache.load_overload = load_or_forget
 
 
 def sources(*structures: type) -> int:

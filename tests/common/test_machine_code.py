@@ -94,3 +94,29 @@ def test_where_nothing_can_be_kept_it_is_made_anew() -> None:
     exec(compile("def twice(value):\n    return 2 * value\n", "<nowhere>", "exec"), scope)
     twice = cast("Callable[[float], float]", scope["twice"])
     assert kept_machine_code(twice)(2.5) == 5.0
+
+
+NAMED = """
+from typing import NamedTuple
+
+class Table(NamedTuple):
+    value: float
+"""
+OF_A_NAMED_TUPLE = """
+from named import Table
+from fes_mj.common.machine_code import kept_machine_code
+
+@kept_machine_code
+def doubled(table):
+    return 2.0 * table.value
+
+print(doubled(Table(1.0)), sum(doubled.stats.cache_hits.values()))
+"""
+
+
+@pytest.mark.process
+def test_what_was_kept_of_a_named_tuple_that_is_gone_is_made_anew(tmp_path: Path, kept: dict[str, str]) -> None:
+    for name in ("Table", "Row"):
+        (tmp_path / "named.py").write_text(NAMED.replace("Table", name))
+        (tmp_path / "of.py").write_text(OF_A_NAMED_TUPLE.replace("import Table", f"import {name} as Table"))
+        assert [run("import of", **kept) for _ in "ab"] == [["2.0 0"], ["2.0 1"]]
