@@ -16,8 +16,8 @@ from fes_mj.muscles.posterior import MEMBERS
 from fes_mj.muscles.riders import SHIPPED
 from fes_mj.muscles.timing import TURN_ANGLES
 from fes_mj.paper.evidence import load_evidence, of_group
-from fes_mj.paper.reconstruction import System
-from fes_mj.paper.statements import TEXT
+from fes_mj.paper.reconstruction import EvidenceSystem
+from fes_mj.paper.statements import TEXT_FILE
 
 CANDIDATES = 40_000
 SEED = 26
@@ -29,8 +29,8 @@ SHARE_SD = 0.25  # of the work: what 100 % is, is not said
 
 def measured(group: str) -> Measured:
     """The numbers from which a rider group's moments were recovered, and its work shares, as measured numbers."""
-    system = System.of(of_group(load_evidence(), group))
-    shares = [row for row in read_toml(TEXT, "statements").content["share"] if row["group"] == group]
+    system = EvidenceSystem.of(of_group(load_evidence(), group))
+    shares = [row for row in read_toml(TEXT_FILE, "statements").content["share"] if row["group"] == group]
     known = [
         (MUSCLE_GROUPS.index(WORKERS[row["muscles"]]), row["value"] / 100)
         for row in shares

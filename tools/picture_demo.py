@@ -25,7 +25,7 @@ def frame() -> Picture:
     speed = render.slow_motion(case.cadence)
     steps = render.steps_shown(case.simulation, speed)
     nearest = np.argmin(np.abs(np.degrees(case.simulation.crank_angle[steps]) % 360 - ANGLE))
-    return next(render.pictures(case, steps[[nearest]], speed, both))
+    return next(render.turn_frames(case, steps[[nearest]], speed, both))
 
 
 def main() -> None:

@@ -48,13 +48,13 @@ def main() -> None:
         gc.freeze()
         leave(status)
     except (KeyboardInterrupt, Exception) as error:
-        code, said = interruption_code(error), "interrupted; nothing was left half-written"
+        code, message = interruption_code(error), "interrupted; nothing was left half-written"
         if code is None and isinstance(error, InputError | MemoryError):
-            code, said = BAD_INPUT, str(error) if isinstance(error, InputError) else OUT_OF_MEMORY
+            code, message = BAD_INPUT, str(error) if isinstance(error, InputError) else OUT_OF_MEMORY
         if code is None:
             sys.excepthook(*sys.exc_info())
             leave(FAULT)
-        print(f"fes_mj: {said}", file=sys.stderr)
+        print(f"fes_mj: {message}", file=sys.stderr)
         leave(code)
 
 

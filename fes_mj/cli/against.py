@@ -44,7 +44,7 @@ def _print_rows(records: list[dict[str, Any]], rule: str, verdicts: dict[str, in
     for kind, title in (("measurement", "Measurements"), ("model", "Models of others: consistency, not validation")):
         cells = []
         for record in (record for record in records if record["kind"] == kind):
-            by, measured = f"{record['drive']}; {record['timing']}", span(record["measured"])
+            by, measured = f"{record['drive']}; {record['timing']}", interval_words(record["measured"])
             if record["unit"] != "1":
                 measured += f" {record['unit']}"
             cells.append((record["name"], by, _quantiles(record["predicted"]), measured, record["verdict"]))
@@ -56,7 +56,7 @@ def _print_rows(records: list[dict[str, Any]], rule: str, verdicts: dict[str, in
     say(", ".join(f"{count} {verdict}" for verdict, count in verdicts.items()), "bold")
 
 
-def span(ends: list[float | None]) -> str:
+def interval_words(ends: list[float | None]) -> str:
     """A measured interval or direction, in words."""
     low, high = ends
     if high is None:

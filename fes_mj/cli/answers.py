@@ -67,8 +67,8 @@ def print_answer(result: Turns, answer: Answer, *more: tuple[str, float]) -> Non
     """Print both numbers, where each of them lies, and more powers of the same design, W."""
     rows = []
     if answer.paper_mean is not None:
-        known = answer.paper_power
-        rows.append((AS_ASSUMED, f"{answer.paper_mean:.2f}", known.interval(2) if known else "not known"))
+        uncertain = answer.paper_power
+        rows.append((AS_ASSUMED, f"{answer.paper_mean:.2f}", uncertain.interval(2) if uncertain else "not known"))
     rows += [(name, f"{power:.2f}", "") for name, power in more]
     for name, estimate, digits in ((FOR_A_RIDER, answer.rider_power, 1), (PER_TRT, answer.rider_ratio, 2)):
         if estimate:

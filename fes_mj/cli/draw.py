@@ -21,7 +21,7 @@ from fes_mj.statics.turn import quasi_static
 if TYPE_CHECKING:
     from fes_mj.statics.sizes import Build
 
-Material: TypeAlias = Literal["aluminium", "steel", "stainless"]  # those of statics.materials
+MaterialName: TypeAlias = Literal["aluminium", "steel", "stainless"]  # those of statics.materials
 
 
 def draw(
@@ -29,7 +29,7 @@ def draw(
     /,
     *,
     out: Out,
-    material: Material = "aluminium",
+    material: MaterialName = "aluminium",
     safety: Annotated[float, Parameter(validator=Number(gte=1, lte=20))] = 2.0,
     step: Flag = False,
     rounded: Flag = False,
@@ -65,18 +65,18 @@ def draw(
         loaded = making.rounded(loaded)
     names = folder.names(hole_places(loaded), step)
     paths = require_results(out, names, whose.inputs(design))
-    made = build(quasi_static(loaded, moments, speed_at(cadence, loaded), FORCE_POINTS), material, safety)
-    files = folder.contents(made, step)
+    built = build(quasi_static(loaded, moments, speed_at(cadence, loaded), FORCE_POINTS), material, safety)
+    files = folder.contents(built, step)
     write_results({path: files[name] for path, name in zip(paths, names, strict=True)})
-    options.show(lambda: _content(made) | {"files": [str(path) for path in paths]}, lambda: _print(made), folder=out)
-    return 1 if made.stack.side.hindrances else 0
+    options.show(lambda: _content(built) | {"files": [str(path) for path in paths]}, lambda: _print(built), folder=out)
+    return 1 if built.stack.side.hindrances else 0
 
 
-def _content(made: Build) -> dict[str, Any]:
+def _content(build: Build) -> dict[str, Any]:
     """The result as JSON names and units it."""
     from fes_mj.statics.making import nearest_gears, rounded, sensitivity
 
-    side, turn = made.stack.side, made.turn
+    side, turn = build.stack.side, build.turn
     power, becomes = None, "turns"
     try:
         power = quasi_static(rounded(turn.design), turn.moments, turn.cadence).power_mean
@@ -84,53 +84,53 @@ def _content(made: Build) -> dict[str, Any]:
         becomes = str(error)
     clearances = {gap.pair: gap.distance for gap in side.gaps}
     return {
-        "design": made.design.name,
+        "design": build.design.name,
         "group": turn.moments.name,
         "power_mean_W": turn.power_mean,
-        "material": made.material.name,
+        "material": build.material.name,
         "clearance_min_m": clearances | {" - ".join(pair): None for pair in side.unknown},
         "clearance_crank_angle_deg": {gap.pair: np.degrees(gap.crank_angle) for gap in side.gaps},
         "hindrances": [gap.pair for gap in side.hindrances],
-        "layers": made.stack.layers,
-        "between_feet_m": made.stack.feet,
-        "width_m": {body: plate.width for body, plate in made.plates.items()},
-        "thickness_m": {body: plate.thickness for body, plate in made.plates.items()},
-        "mass_kg": made.mass,
-        "pin_diameter_m": made.pins,
-        "pin_force_max_N": {joint: made.loads.largest(joint) for joint in made.pins},
-        "sensitivity_per_0.1_mm": [effect._asdict() for effect in sensitivity(made.design, turn.moments)],
+        "layers": build.stack.layers,
+        "between_feet_m": build.stack.feet,
+        "width_m": {body: plate.width for body, plate in build.plates.items()},
+        "thickness_m": {body: plate.thickness for body, plate in build.plates.items()},
+        "mass_kg": build.mass,
+        "pin_diameter_m": build.pins,
+        "pin_force_max_N": {joint: build.loads.largest(joint) for joint in build.pins},
+        "sensitivity_per_0.1_mm": [effect._asdict() for effect in sensitivity(build.design, turn.moments)],
         "rounded_power_mean_W": power,
         "rounded": becomes,
-        "gears": nearest_gears(made.design.linkage.gear_ratio)._asdict(),
+        "gears": nearest_gears(build.design.linkage.gear_ratio)._asdict(),
     }
 
 
-def _print(made: Build) -> None:
-    loads, side = made.loads, made.stack.side
+def _print(build: Build) -> None:
+    loads, side = build.loads, build.stack.side
     rows = [
-        (body, *(f"{1e3 * size:g}" for size in (plate.width, plate.thickness)), f"{made.mass[body]:.3f}",
-         f"{made.stack.layers[body]}")
-        for body, plate in made.plates.items()
+        (body, *(f"{1e3 * size:g}" for size in (plate.width, plate.thickness)), f"{build.mass[body]:.3f}",
+         f"{build.stack.layers[body]}")
+        for body, plate in build.plates.items()
     ]  # fmt: skip
-    title = f"{heading(made.turn)}; {made.material.name}"
+    title = f"{heading(build.turn)}; {build.material.name}"
     print_table(title, ("link", "width, mm", "thickness, mm", "mass, kg", "layer"), rows)
     cases = (loads.riding, loads.pushed)
     pins = [
         (joint.replace("_", " "), f"{1e3 * diameter:.3g}", *(f"{np.abs(case[joint]).max():.0f}" for case in cases))
-        for joint, diameter in made.pins.items()
+        for joint, diameter in build.pins.items()
     ]
     print_table("Pins", ("joint", "diameter, mm", "riding, N", "pedal load, N"), pins)
     gaps = [(gap.pair, f"{1e3 * gap.distance:.1f}", f"{np.degrees(gap.crank_angle):.0f}") for gap in side.near]
     head = f"Clearances over the turn below {1e3 * SHOWN_GAP:g} mm; negative: passing beside each other"
     print_table(head, ("pair", "least, mm", "at crank deg"), gaps)
-    _print_making(_content(made), made.design.linkage.gear_ratio)
+    _print_making(_content(build), build.design.linkage.gear_ratio)
     if missing := dict.fromkeys(part for _, part in side.unknown):
         say(f"not known, as the design file says nothing of them in [frame]: {', '.join(missing)}")
     if side.hindrances:
         meeting = ", ".join(f"{gap.pair} ({1e3 * gap.distance:.1f} mm)" for gap in side.hindrances)
         conclude(False, "Cannot be built so", f": {meeting}.")
     else:
-        conclude(True, "Can be built", f": feet {1e3 * made.stack.feet:.0f} mm apart.")
+        conclude(True, "Can be built", f": feet {1e3 * build.stack.feet:.0f} mm apart.")
 
 
 def _print_making(content: dict[str, Any], ratio: float) -> None:

@@ -57,11 +57,11 @@ def moments(
     beside = out.with_suffix(".toml") if out and path and not fit_muscles else None
     require_replaceable([beside] if beside else [], "the tricycle of the moments", inputs)
     measurement = load_measurement(path) if path else Measurement.of(load_moments(file))
-    own = measurement.moments
-    warn_of(own)
+    joint_moments = measurement.moments
+    warn_of(joint_moments)
     content = measurement.summary()
     if identify:
-        numbers = identify_tricycle(measurement.turns, own.measured_on)
+        numbers = identify_tricycle(measurement.turns, joint_moments.measured_on)
         content["identified"] = [number._asdict() for number in numbers]
     if plot:
         require_extra("report", "matplotlib")
@@ -70,10 +70,10 @@ def moments(
 
         write_figure(plot, moments_figure, measurement)
     if out and fit_muscles:
-        content["fitted"] = _fitted(own, out, options)
+        content["fitted"] = _fitted(joint_moments, out, options)
     elif out:
-        kept = {beside: measurement_toml(own, out)} if beside else {}
-        write_files({out: moments_csv(own), **kept}, unnamed=kept)
+        kept = {beside: measurement_toml(joint_moments, out)} if beside else {}
+        write_files({out: moments_csv(joint_moments), **kept}, unnamed=kept)
     written = {"riders" if fit_muscles else "moments": out, "measurement_file": beside}
     options.show(lambda: content, lambda: _print(measurement, content, out), plot=plot, **written)
 
@@ -91,7 +91,7 @@ def _fitted(moments: JointMoments, out: Path, options: PrintOptions) -> dict[str
 
 
 def _print(measurement: Measurement, content: dict[str, Any], out: Path | None) -> None:
-    own = measurement.moments
+    moments = measurement.moments
     counted = ", ".join(
         f"{content[what]} {what[:-1]}{'s' * (content[what] > 1)}" for what in ("riders", "trials", "turns", "samples")
     )
@@ -104,10 +104,10 @@ def _print(measurement: Measurement, content: dict[str, Any], out: Path | None) 
             "mean power on the tricycle of the measurement, W",
             with_error(content["power_mean_W"], content["power_sd_W"]),
         ),
-        *((f"  of the {joint}, W", f"{power:.3f}") for joint, power in own.power_mean.items()),
+        *((f"  of the {joint}, W", f"{power:.3f}") for joint, power in moments.power_mean.items()),
         ("work per turn there, J", f"{content['work_per_turn_J']:.3f}"),
     ]
-    print_table(f"{own.name}, measured on {_tricycle(own)}", ("", "understood"), rows)
+    print_table(f"{moments.name}, measured on {_tricycle(moments)}", ("", "understood"), rows)
     if measurement.comparisons:
         compared = [
             (row.quantity, row.recorded, row.declared, check_word(row.agrees, "contradicts"))
@@ -115,17 +115,17 @@ def _print(measurement: Measurement, content: dict[str, Any], out: Path | None) 
         ]
         print_table("Is it plausible?", ("", "recorded", "declared or expected", ""), compared)
     if "identified" in content:
-        found = [
+        numbers = [
             (f"{symbol}, {unit}", f"{value:.3f} +- {deviation:.3f}", f"{declared:.3f}")
             for symbol, unit, value, deviation, declared in map(dict.values, content["identified"])
         ]
-        print_table("The tricycle by the angles of knee and hip", ("", "identified", "declared"), found)
+        print_table("The tricycle by the angles of knee and hip", ("", "identified", "declared"), numbers)
     if "fitted" in content:
         _print_fitted(content["fitted"], out)
 
 
-def _tricycle(own: JointMoments) -> str:
-    reference = own.measured_on
+def _tricycle(moments: JointMoments) -> str:
+    reference = moments.measured_on
     design, top = reference.design, np.degrees(reference.top_dead_centre)
     centre, rider = design.linkage.crank_centre, design.rider
     return (

@@ -22,12 +22,12 @@ from fes_mj.statics.friction import Bearings
 
 def bounds(variable: str) -> Callable[[Any, Any], None]:
     """A validator with the bounds that a design variable has in files, in words with its unit."""
-    known = VARIABLES[variable]
+    allowed = VARIABLES[variable]
 
     def check(_: Any, value: Any) -> None:
-        given = value if isinstance(value, Sequence) else [value]
-        if not all(known.accepts(number) for number in given if number is not None):
-            raise ValueError(f"It must be {known.allowed}.")
+        numbers = value if isinstance(value, Sequence) else [value]
+        if not all(allowed.accepts(number) for number in numbers if number is not None):
+            raise ValueError(f"It must be {allowed.allowed}.")
 
     return check
 
@@ -46,8 +46,8 @@ def needs(flag: str, *values: str) -> Callable[[ArgumentCollection], None]:
             return
         for argument in arguments:
             if argument.tokens and argument.name != flag:
-                given = _given(argument.name, argument.value)
-                raise ValueError(f"{given} needs {' '.join([flag, ' or '.join(values)]).rstrip()}.")
+                option = _given(argument.name, argument.value)
+                raise ValueError(f"{option} needs {' '.join([flag, ' or '.join(values)]).rstrip()}.")
 
     return check
 
@@ -60,11 +60,11 @@ def _given(flag: str, value: object) -> str:
 
 def changed(options: object, *but: str) -> dict[str, Any]:
     """Options of a dataclass, by flag, that are not as they are by default."""
-    known = {field.name: field.default for field in fields(options)}  # type: ignore[arg-type]
+    defaults = {field.name: field.default for field in fields(options)}  # type: ignore[arg-type]
     return {
         f"--{name.replace('_', '-')}": value
         for name, value in vars(options).items()
-        if name not in but and value != known[name]
+        if name not in but and value != defaults[name]
     }
 
 
@@ -97,7 +97,7 @@ DesignName: TypeAlias = Annotated[str, Parameter(help=DESIGN_HELP)]
 Flag: TypeAlias = Annotated[bool, Parameter(negative="")]
 Out: TypeAlias = Annotated[Path, Parameter(name=["--out", "-o"])]
 Cadence: TypeAlias = Annotated[float, Parameter(validator=bounds("cadence_rpm"))]
-Legs: TypeAlias = Literal[1, 2]
+LegCount: TypeAlias = Literal[1, 2]
 Dims: TypeAlias = Annotated[
     Literal["identified", "printed"],
     Parameter(help="Dimensions of one of the paper's designs: as identified, or as the paper prints them."),
@@ -212,7 +212,7 @@ class LoadOptions(MomentsOptions):
     """
 
     cadence: Cadence | None = None
-    legs: Legs = 1
+    legs: LegCount = 1
     dims: Dims = "identified"
 
     def load(self, design: str) -> tuple[Design, JointMoments, float]:

@@ -162,9 +162,9 @@ class SearchOptions(PrintOptions, MomentsOptions):
 
     def command(self, kind: str) -> str:
         """The command line, for a shell, that finds the same again with this version: what is not by default."""
-        words, own, defaults = ["fes_mj", "optimize", kind], vars(self) | vars(self.drive), SearchOptions()
+        words, options, defaults = ["fes_mj", "optimize", kind], vars(self) | vars(self.drive), SearchOptions()
         usual = vars(defaults) | vars(defaults.drive)
-        for name, value in own.items():
+        for name, value in options.items():
             if name in _WITHOUT_EFFECT or value == usual[name]:
                 continue
             text = value[0] if isinstance(value, list) else value  # the one file of moments

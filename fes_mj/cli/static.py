@@ -132,10 +132,10 @@ def _print_comparison(designs: list[Answered], verbose: bool) -> None:
         rows.append((design.name, f"{design.result.first.cadence / RPM:.1f}", assumed, *cells))
     per = f"per {base.name}"
     heads = ["design", "rpm", "as the paper assumes, W", per, "for a rider, W", per, "per equally timed TRT"]
-    if known := all(row[-1] in (row[-2], "-") for row in rows):  # no more than the ratio to the first design says
+    if no_more := all(row[-1] in (row[-2], "-") for row in rows):  # no more than the ratio to the first design says
         heads, rows = heads[:-1], [row[:-1] for row in rows]
     print_table(f"{base.result.first.driver}; mean crank power of a leg (5 to 95 %)", heads, rows)
-    for reason, names in _missing([each for each in designs if each.answer.rider is None or not known]).items():
+    for reason, names in _missing([row for row in designs if row.answer.rider is None or not no_more]).items():
         say(f"for a rider, {', '.join(names)}: {reason}")
     for design in designs:
         if design.loss:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fes_mj.cli.drive import DriveOptions
-from fes_mj.cli.options import Cadence, Cluster, Jobs, Legs, Out, PrintOptions, warn_of
+from fes_mj.cli.options import Cadence, Cluster, Jobs, LegCount, Out, PrintOptions, warn_of
 from fes_mj.common.console import print_table, progress_bar, say
 from fes_mj.common.errors import InputError, MissingPartError, require_extra
 from fes_mj.common.parallel import Workers
@@ -26,7 +26,7 @@ def sweep(
     *,
     out: Out,
     cadence: Cadence | None = None,
-    legs: Legs = 1,
+    legs: LegCount = 1,
     jobs: Jobs | None = None,
     cluster: Cluster | None = None,
     csv: Path | None = None,

@@ -57,8 +57,8 @@ def say_stimulation(result: MuscleStatic) -> None:
     windows = result.windows_deg or {}
     ends = {group: "never" if pair is None else "{:.0f} to {:.0f}".format(*pair) for group, pair in windows.items()}
     if ends:
-        each = ", ".join(f"{group} {pair}" for group, pair in ends.items())
-        say(f"stimulated, deg of crank, 0 where {CRANK_ZERO}: {each}")
+        windows_text = ", ".join(f"{group} {pair}" for group, pair in ends.items())
+        say(f"stimulated, deg of crank, 0 where {CRANK_ZERO}: {windows_text}")
 
 
 def print_forces(joint_forces: JointForces) -> None:
@@ -90,7 +90,7 @@ def beside(*results: list[tuple[str, str]]) -> list[tuple[str, ...]]:
 
 
 def span(ends: Sequence[float]) -> str:
-    """A range of angles."""
+    """A range of numbers."""
     return f"{ends[0]:.1f} to {ends[1]:.1f}"
 
 

@@ -31,9 +31,9 @@ from fes_mj.simulation.export import mjcf_text
 from fes_mj.simulation.mjcf import build_mjcf
 from fes_mj.statics.drive import Drive
 
-Answer = dict[str, Any]
+Reply = dict[str, Any]
 DRIVES = ("moments", "muscles")
-STEEPEST = 30.0  # percent, up or down, that a ride is asked for
+MOST_SLOPE = 30.0  # percent, up or down, that a ride is asked for
 
 
 class Answers:
@@ -49,11 +49,11 @@ class Answers:
         self.uploads = Uploads()
         self.reader: Callable[..., Any] = call  # a server's reads elsewhere
         names = ("start", "turn", "making", "numbers", "change", "save", "model", "open-design", "open-moments")
-        self.by_name: dict[str, Callable[[Section], Answer]] = {
+        self.by_name: dict[str, Callable[[Section], Reply]] = {
             name: getattr(self, name.replace("-", "_")) for name in names
         }
 
-    def start(self, question: Section) -> Answer:
+    def start(self, question: Section) -> Reply:
         """What the page needs once."""
         designs = {name: content_of(load_design(name)) for name in DESIGNS}
         return {
@@ -68,24 +68,24 @@ class Answers:
             "colours": COLOURS,
         }
 
-    def turn(self, question: Section) -> Answer:
+    def turn(self, question: Section) -> Reply:
         """Motion, curves and numbers of a design under all moments that the page knows."""
         return turn(_design(question), self._moments(question), _legs(question))
 
-    def making(self, question: Section) -> Answer:
+    def making(self, question: Section) -> Reply:
         """Whether a design can be laid out and what comes near to what, sized for its turn under "moments"."""
-        known = self._moments(question)
-        return making(_design(question), known[question.choice("moments", known)])
+        moments = self._moments(question)
+        return making(_design(question), moments[question.choice("moments", moments)])
 
-    def numbers(self, question: Section) -> Answer:
+    def numbers(self, question: Section) -> Reply:
         """Both numbers of a design beside those of the one it is "compared" with; under muscles also what these do."""
-        known = self._moments(question)
-        design, moments = _design(question), known[question.choice("moments", known)]
+        choices = self._moments(question)
+        design, moments = _design(question), choices[question.choice("moments", choices)]
         both = numbers(design, design_of(question.content.get("compared")), moments)
         by_moments = question.choice("drive", DRIVES, DRIVES[0]) == "moments"
         return both if by_moments else both | by_muscles(design, moments, _legs(question))
 
-    def change(self, question: Section) -> Answer:
+    def change(self, question: Section) -> Reply:
         """A design of another "kind" or "branch", or with the rider of a "percentile" of a "sex"; as it is without."""
         design = _design(question)
         design = of_kind(design, question.choice("kind", ARCHITECTURES, design.linkage.kind))
@@ -97,47 +97,47 @@ class Answers:
             design = design.with_rider(thigh=rider.thigh, shank=rider.shank, mass=rider.mass, sex=sex)
         return {"design": content_of(design)}
 
-    def save(self, question: Section) -> Answer:
+    def save(self, question: Section) -> Reply:
         """A design as the text of its file."""
         design = _design(question)
         return {"name": f"{design.name}.toml", "text": design_toml(design, "Made with fes_mj explore.")}
 
-    def model(self, question: Section) -> Answer:
+    def model(self, question: Section) -> Reply:
         """The MuJoCo model of a design."""
         design = _design(question)
         return {"name": f"{design.name}.xml", "text": mjcf_text(build_mjcf(design, legs=_legs(question)))}
 
-    def open_design(self, question: Section) -> Answer:
+    def open_design(self, question: Section) -> Reply:
         """A design file's design."""
         return {"design": content_of(read_upload(question, load_design, self.reader))}
 
-    def open_moments(self, question: Section) -> Answer:
+    def open_moments(self, question: Section) -> Reply:
         """Take a file of joint moments, with those that it names, among the ones that the page knows."""
         moments = read_upload(question, moments_of_bundle, self.reader)
         name = self.uploads.add(_page(question), moments, self.shared)
         warnings = [misreading.text for misreading in moments.misreadings]
         return {"name": name, "moments": [*self._moments(question)], "warnings": warnings}
 
-    def run(self, name: str, question: Section) -> Callable[[Path], Answer]:
+    def run(self, name: str, question: Section) -> Callable[[Path], Reply]:
         """What runs.RUNS is asked, with all that it needs, but for its folder. Raises InputError, and KeyError."""
         design, drive = _design(question), self._drive(question)
         if isinstance(drive, Muscles) and name not in BY_MUSCLES:
             raise InputError("muscles do not drive this; choose joint moments")
         if name != "fit":  # which may find a seat with which it turns
             turning(design)
-        options: Mapping[str, Callable[[], Answer]] = {
+        options: Mapping[str, Callable[[], Reply]] = {
             "simulate": lambda: {"legs": _legs(question)},
             "ride": lambda: {
                 "transmission": question.choice("transmission", TRANSMISSIONS, TRANSMISSIONS[0]),
-                "slope": question.value("slope", 0.0, _is_slope, f"a slope from -{STEEPEST:g} to {STEEPEST:g} %"),
+                "slope": question.value("slope", 0.0, _is_slope, f"a slope from -{MOST_SLOPE:g} to {MOST_SLOPE:g} %"),
             },
         }
         return partial(RUNS[name], design, drive, **options.get(name, dict)())
 
     def _drive(self, question: Section) -> Drive:
         """What drives: the moments that are asked for, or the muscles of the same riders."""
-        known = self._moments(question)
-        moments = known[question.choice("moments", known)]
+        choices = self._moments(question)
+        moments = choices[question.choice("moments", choices)]
         if question.choice("drive", DRIVES, DRIVES[0]) == "moments":
             return moments
         require_muscles(moments.name)
@@ -167,7 +167,7 @@ def _design(question: Section) -> Design:
 
 
 def _is_slope(value: Any) -> bool:
-    return is_number(value) and abs(value) <= STEEPEST
+    return is_number(value) and abs(value) <= MOST_SLOPE
 
 
 def _legs(question: Section) -> int:

@@ -26,13 +26,13 @@ def numbers(design: Design, compared: Design, moments: JointMoments) -> dict[str
 
     "rider_power_mean_W" is a rider's. What is not known is left out, and "why" says so.
     """
-    own, other = _answered(design, moments), _answered(compared, moments)
-    power = own.rider_power
+    answered, other = _answered(design, moments), _answered(compared, moments)
+    power = answered.rider_power
     return {
         "rider_power_mean_W": power and power.value,
         "rider": power and power.text(1),
-        "both": _both(own, *own.per(other)),
-        "why": own.missing or None,
+        "both": _both(answered, *answered.per(other)),
+        "why": answered.missing or None,
     }
 
 
@@ -68,11 +68,11 @@ def _answered(design: Design, moments: JointMoments) -> Answer:
     return answer(design, legs, riders_of(moments))
 
 
-def _both(own: Answer, paper: Estimate | None, rider: Estimate | None) -> dict[str, list[list[str] | None]]:
+def _both(answered: Answer, paper: Estimate | None, rider: Estimate | None) -> dict[str, list[list[str] | None]]:
     """By number: W, per compared, per the equally timed TRT, each as text with its interval; None if not known."""
     rows = {
-        "assumed": ((own.paper_power, 2), (paper, 2), (None, 2)),
-        "rider": ((own.rider_power, 1), (rider, 2), (own.rider_ratio, 2)),
+        "assumed": ((answered.paper_power, 2), (paper, 2), (None, 2)),
+        "rider": ((answered.rider_power, 1), (rider, 2), (answered.rider_ratio, 2)),
     }
     return {
         name: [[f"{cell.value:.{digits}f}", cell.interval(digits)] if cell else None for cell, digits in cells]

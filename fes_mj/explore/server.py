@@ -32,10 +32,10 @@ from uvicorn.protocols.http.h11_impl import H11Protocol
 
 from fes_mj.common.console import complain, say
 from fes_mj.common.errors import InputError, MissingPartError, UnstableError
-from fes_mj.explore.answers import Answer, Answers, as_question
+from fes_mj.explore.answers import Answers, Reply, as_question
 from fes_mj.explore.runs import RUNS, progress
 
-PATIENCE = 10  # s, for the head of a request, then for its body, then for the next one on the same connection
+REQUEST_PATIENCE = 10  # s, for the head of a request, then for its body, then for the next one on the same connection
 READING = 60  # s, for a file
 LARGEST_QUESTION = 16 * 2**20  # bytes: more than ten minutes of a trial as OpenSim writes it
 LONGEST_SENTENCE = 1000  # characters of a refusal, which may show what was sent
@@ -49,7 +49,7 @@ HEADERS = {
     "Referrer-Policy": "no-referrer",  # the address holds the token
     "X-Content-Type-Options": "nosniff",
 }
-EXPECTED = (InputError, UnstableError, MissingPartError)
+REFUSALS = (InputError, UnstableError, MissingPartError)
 _PAGE = Path(__file__).parent / "page"
 _LOG = logging.getLogger(__name__)
 
@@ -67,22 +67,22 @@ def application(answers: Answers, token: str, hosts: set[str] | None) -> Starlet
         if not here or not secrets.compare_digest(request.headers.get("x-token", "").encode(), token.encode()):
             raise HTTPException(403, "only the page may ask: open the address that fes_mj explore has printed")
         try:
-            with anyio.fail_after(PATIENCE):
+            with anyio.fail_after(REQUEST_PATIENCE):
                 body = await request.body()
         except TimeoutError:
-            raise HTTPException(408, f"the question did not come within {PATIENCE} s") from None
+            raise HTTPException(408, f"the question did not come within {REQUEST_PATIENCE} s") from None
         name, question = request.path_params["name"], as_question(body)
         if name in RUNS:
             return StreamingResponse(_lines(answers.run(name, question)), media_type="application/x-ndjson")
         if name not in answers.by_name:
             raise HTTPException(404, f"the page cannot ask for {name!r}")
-        answer = await anyio.to_thread.run_sync(lambda: as_json(answers.by_name[name](question)))
+        answer = await anyio.to_thread.run_sync(lambda: encoded(answers.by_name[name](question)))
         return Response(answer, media_type="application/json")
 
     return Starlette(
         routes=[Route("/{name}", ask, methods=["POST"]), Mount("/", StaticFiles(directory=_PAGE, html=True))],
         middleware=[Middleware(RequestBodyLimitMiddleware, max_body_size=LARGEST_QUESTION)],
-        exception_handlers=dict.fromkeys((HTTPException, *EXPECTED, Exception), _refuse),
+        exception_handlers=dict.fromkeys((HTTPException, *REFUSALS, Exception), _refuse),
     )
 
 
@@ -91,8 +91,8 @@ def _apart(load: Callable[[Path], Any], path: Path) -> Any:
 
     async def loaded() -> Any:
         with anyio.fail_after(READING):
-            own = anyio.CapacityLimiter(1)  # runs, of which so many go on as there are cores, hold up no file
-            return await anyio.to_process.run_sync(load, path, cancellable=True, limiter=own)
+            limiter = anyio.CapacityLimiter(1)  # runs, of which so many go on as there are cores, hold up no file
+            return await anyio.to_process.run_sync(load, path, cancellable=True, limiter=limiter)
 
     try:
         return anyio.from_thread.run(loaded)
@@ -100,7 +100,7 @@ def _apart(load: Callable[[Path], Any], path: Path) -> Any:
         raise InputError(f"the file could not be read within {READING} s; leave out what is not needed of it") from None
 
 
-async def _lines(run: Callable[[Path], Answer]) -> AsyncIterator[bytes]:
+async def _lines(run: Callable[[Path], Reply]) -> AsyncIterator[bytes]:
     """Progress of a run in a process of its own, and its answer; the process ends when nobody listens any more."""
     with TemporaryDirectory() as folder:
         work = asyncio.create_task(anyio.to_process.run_sync(run, Path(folder), cancellable=True))
@@ -109,12 +109,12 @@ async def _lines(run: Callable[[Path], Answer]) -> AsyncIterator[bytes]:
             while not (await asyncio.wait([work], timeout=TICK))[0]:
                 text = (progress(Path(folder)) or RUNNING) if work in going.statistics().borrowers else WAITING
                 if text != said:
-                    yield as_json({"progress": text}) + b"\n"
+                    yield encoded({"progress": text}) + b"\n"
                 said = text
-            yield as_json(work.result())
+            yield encoded(work.result())
         except Exception as error:
             _LOG.error("a run failed", exc_info=error)
-            yield as_json({"error": _refusal(error)[1]})
+            yield encoded({"error": _refusal(error)[1]})
         finally:
             work.cancel()
             with anyio.CancelScope(shield=True):  # until it has ended: its folder goes next
@@ -123,20 +123,20 @@ async def _lines(run: Callable[[Path], Answer]) -> AsyncIterator[bytes]:
 
 async def _refuse(_: Request, error: Exception) -> Response:
     status, sentence = _refusal(error)
-    return Response(as_json({"error": sentence}), status, media_type="application/json")
+    return Response(encoded({"error": sentence}), status, media_type="application/json")
 
 
 def _refusal(error: Exception) -> tuple[int, str]:
     """Status and sentence of an answer that there is not."""
     if isinstance(error, HTTPException):
         return error.status_code, error.detail
-    if isinstance(error, EXPECTED):
+    if isinstance(error, REFUSALS):
         sentence, most = str(error), LONGEST_SENTENCE // 2
         return 400, sentence if len(sentence) <= 2 * most else f"{sentence[:most]} [...] {sentence[-most:]}"
     return 500, f"fes_mj failed at this ({type(error).__name__}: {error}); with --debug its terminal says where"
 
 
-def as_json(answer: Answer) -> bytes:
+def encoded(answer: Reply) -> bytes:
     """The answer as the page reads it: arrays are lists, and every number is one that JSON has."""
     return json.dumps(answer, default=lambda array: array.tolist(), allow_nan=False, separators=(",", ":")).encode()
 
@@ -146,7 +146,7 @@ class Protocol(H11Protocol):
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
         super().connection_made(transport)
-        self.timeout_keep_alive_task = self.loop.call_later(PATIENCE, self.timeout_keep_alive_handler)
+        self.timeout_keep_alive_task = self.loop.call_later(REQUEST_PATIENCE, self.timeout_keep_alive_handler)
 
     def data_received(self, data: bytes) -> None:
         timer, self.timeout_keep_alive_task = self.timeout_keep_alive_task, None  # or any byte would stop it
@@ -179,7 +179,7 @@ class Server(uvicorn.Server):
             headers=[*HEADERS.items()],
             server_header=False,
             limit_concurrency=CONNECTIONS,
-            timeout_keep_alive=PATIENCE,
+            timeout_keep_alive=REQUEST_PATIENCE,
             timeout_graceful_shutdown=1,
         )
         super().__init__(config)

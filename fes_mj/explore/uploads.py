@@ -32,9 +32,9 @@ class Uploads:
         with self._lock:
             now = self._clock()
             self._kept = {key: kept for key, kept in self._kept.items() if now - kept[0] <= LONGEST}
-            own = {key: self._kept.pop(key) for key in [*self._kept] if key[0] == page}
-            self._kept |= {key: (now, moments) for key, (_, moments) in own.items()}
-        return {name: moments for (_, name), (_, moments) in own.items()}
+            of_page = {key: self._kept.pop(key) for key in [*self._kept] if key[0] == page}
+            self._kept |= {key: (now, moments) for key, (_, moments) in of_page.items()}
+        return {name: moments for (_, name), (_, moments) in of_page.items()}
 
     def add(self, page: str, moments: JointMoments, taken: Collection[str]) -> str:
         """Keep moments for a page under their name, with a number after it where that is taken; return the name."""
@@ -58,8 +58,8 @@ def read_upload(question: Section, load: Callable[[Path], Loaded], reader: Calla
     text = question.value("text", None, is_text, "the text of the file")
     beside = question.value("beside", {}, _are_files, "names of files, without a folder, and their texts")
     with TemporaryDirectory() as folder:
-        for own, content in {**beside, name: text}.items():
-            (Path(folder) / own).write_bytes(content.encode(errors="surrogatepass"))
+        for file_name, content in {**beside, name: text}.items():
+            (Path(folder) / file_name).write_bytes(content.encode(errors="surrogatepass"))
         try:
             return reader(load, Path(folder) / name)
         except InputError as error:

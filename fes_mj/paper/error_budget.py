@@ -16,14 +16,14 @@ from fes_mj.moments.uncertainty import with_sd
 from fes_mj.paper.captions import Rows, table
 from fes_mj.statics.turn import QuasiStatic
 
-DRAWS = 1000  # of each unknown: a standard deviation is known to 2 % of itself
+PAPER_DRAWS = 1000  # of each unknown: a standard deviation is known to 2 % of itself
 TIMES = 8  # each comes up in the rows of all together: a probability of one half is known to 0.6 %
 GAINS = (1.25, 1.5, 2.0)  # power per the TRT's
 UNKNOWNS = [*budget_priors()]  # the last draws nothing
 
 
 class Drawn(NamedTuple):
-    """Of one design and group. powers: with all drawn, W, shape (DRAWS * TIMES,). shares: by unknown."""
+    """Of one design and group. powers: with all drawn, W, shape (PAPER_DRAWS * TIMES,). shares: by unknown."""
 
     budget: ErrorBudget
     powers: FloatArray
@@ -37,10 +37,10 @@ def draw_all(static: dict[tuple[str, str], QuasiStatic], silent: bool) -> Budget
     """By design and group, on the same draws of whatever designs share. Raises MissingPartError without SALib."""
     budgets = {}
     for key in track([*static], "error budgets", silent):
-        budget, uncertain = error_budget(static[key], draws=DRAWS), UncertainPower(static[key], DRAWS)
+        budget, uncertain = error_budget(static[key], draws=PAPER_DRAWS), UncertainPower(static[key], PAPER_DRAWS)
         assert budget is not None
-        powers = uncertain.at(together(unknowns(), DRAWS, TIMES))
-        budgets[key] = Drawn(budget, powers, sobol_shares(uncertain.at, unknowns(), DRAWS))
+        powers = uncertain.at(together(unknowns(), PAPER_DRAWS, TIMES))
+        budgets[key] = Drawn(budget, powers, sobol_shares(uncertain.at, unknowns(), PAPER_DRAWS))
     return budgets
 
 
@@ -55,7 +55,7 @@ def contribution_table(budgets: Budgets) -> Rows:
     """Standard deviation by each unknown alone, and mean and standard deviation of all together."""
     for (name, group), drawn in budgets.items():
         spread = Spread.of(drawn.powers)
-        turning = 100 * (1 - spread.failed / (DRAWS * TIMES))
+        turning = 100 * (1 - spread.failed / (PAPER_DRAWS * TIMES))
         yield name.upper(), group, *drawn.budget.by.values(), with_sd(spread.mean, spread.sd, 1), turning
 
 

@@ -37,7 +37,7 @@ def knee_speed_table(runs: Runs) -> Rows:
         result, trt = runs.static[name, group], runs.static["trt", group]
         knee_speed = joint_speed(trt, "knee")[0]
         geared = (result, at_knee_speed(result, knee_speed))
-        gains = (with_sd(own.power_mean / trt.power_mean, ratio_sd(own, trt)) for own in geared)
+        gains = (with_sd(turn.power_mean / trt.power_mean, ratio_sd(turn, trt)) for turn in geared)
         speed = joint_speed(result, "knee")[0] / knee_speed
         yield name.upper(), group, speed, *gains
 

@@ -53,11 +53,11 @@ def identify(
     printed: Design, target: Expected, seat_angle: float = SEAT_ANGLE, coupler_angle: float = COUPLER_ANGLE
 ) -> Identification:
     """Identify one six-bar for a seat angle and a coupler angle (rad)."""
-    wanted, candidate = _wanted(target), _candidates(printed, seat_angle, coupler_angle)
+    printed_ranges, candidate = _wanted(target), _candidates(printed, seat_angle, coupler_angle)
 
     def margins(shift: FloatArray) -> FloatArray:
         design = candidate(shift)
-        error = np.nan_to_num(joint_ranges(design) - wanted, nan=180.0)
+        error = np.nan_to_num(joint_ranges(design) - printed_ranges, nan=180.0)
         return np.array([*(RANGE_TOLERANCE - error), *(RANGE_TOLERANCE + error), 100 * grashof_margin(design).item()])
 
     results, random = [], np.random.default_rng(_SEED)
@@ -83,10 +83,10 @@ def range_misfit(printed: Design, target: Expected, seat_angle: float, coupler_a
 
     NaN if no start inside the box turns; then nothing can be said.
     """
-    wanted, candidate = _wanted(target), _candidates(printed, seat_angle, coupler_angle)
+    printed_ranges, candidate = _wanted(target), _candidates(printed, seat_angle, coupler_angle)
 
     def error(shift: FloatArray) -> FloatArray:
-        return np.asarray(joint_ranges(candidate(shift)) - wanted)
+        return np.asarray(joint_ranges(candidate(shift)) - printed_ranges)
 
     random = np.random.default_rng(_SEED)
     starts = [start for start in random.uniform(-0.9, 0.9, (60, 9)) if np.all(np.isfinite(error(start)))]
@@ -98,12 +98,12 @@ def range_misfit(printed: Design, target: Expected, seat_angle: float, coupler_a
 
 
 def inside_rounding(
-    name: str, half_widths: Mapping[str, float], random: np.random.Generator, wanted: int, batch: int = 10_000
+    name: str, half_widths: Mapping[str, float], random: np.random.Generator, count: int, batch: int = 10_000
 ) -> dict[str, FloatArray]:
     """Linkages drawn evenly around the print that move as Table 1 says, by component, shape (linkages,) each.
 
     half_widths: by component (linkage.variables), in the unit of files, how far it may be from the print. At most
-    `wanted` linkages: those of which a finer turn says otherwise are left out.
+    `count` linkages: those of which a finer turn says otherwise are left out.
     """
     printed, wanted_ranges = load_design(name, "printed"), _wanted(table1()[name])
     middle, half = (
@@ -116,10 +116,10 @@ def inside_rounding(
         return drawn[:, np.all(np.abs(ranges - wanted_ranges) < 0.5, axis=1)]
 
     accepted: FloatArray = np.empty((len(half_widths), 0, 1))
-    while accepted.shape[1] < wanted:
+    while accepted.shape[1] < count:
         drawn = middle + half * random.uniform(-1, 1, (len(half_widths), batch, 1))
         accepted = np.hstack([accepted, moving_so(drawn, FULL_TURN[::8])])
-    accepted = moving_so(accepted[:, :wanted], FULL_TURN)  # the coarse turn may have stepped over an extreme
+    accepted = moving_so(accepted[:, :count], FULL_TURN)  # the coarse turn may have stepped over an extreme
     return dict(zip(half_widths, accepted[..., 0], strict=True))
 
 
@@ -197,18 +197,18 @@ def dimensions_table() -> Rows:
 def ranges_table() -> Rows:
     """Joint ranges: Table 1, printed dimensions, identified dimensions, and Grashof's margin of both."""
     for name, target in table1().items():
-        wanted = _wanted(target)
+        printed_ranges = _wanted(target)
         for dims in ("printed", "identified"):
             design = load_design(name, dims)
             try:
                 turning(design)
                 ranges = [float(value) for value in joint_ranges(design)]
-                error: float | None = float(np.abs(ranges - wanted).max())
+                error: float | None = float(np.abs(ranges - printed_ranges).max())
             except AssemblyError:
                 ranges, error = [], None
             verdict = "cannot turn" if error is None else "yes" if error <= 0.5 else "no"
             margin = None if name == "trt" else 100 * grashof_margin(design).item()
-            yield name.upper(), dims, _span(wanted, 0), _span(ranges, 1), error, verdict, margin
+            yield name.upper(), dims, _span(printed_ranges, 0), _span(ranges, 1), error, verdict, margin
 
 
 def _span(ranges: list[float] | FloatArray, digits: int) -> str:

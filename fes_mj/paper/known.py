@@ -20,7 +20,7 @@ from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.moments.uncertainty import power_weights
 from fes_mj.paper.evidence import Evidence, functional, of_group
 from fes_mj.paper.identification import LENGTH_ROUNDING, inside_rounding
-from fes_mj.paper.reconstruction import Hyperparameters, Posterior, System, condition, draw, reconstruct
+from fes_mj.paper.reconstruction import EvidenceSystem, Hyperparameters, Posterior, condition, drawn_curves, reconstruct
 from fes_mj.paper.statements import allowed_curves
 
 BASES = ("numbers alone", "with the text")
@@ -89,7 +89,9 @@ class Known:
 def known(evidence: list[Evidence]) -> Known:
     """From the evidence and from the curves that ship."""
     random, (hyperparameters, posteriors) = np.random.default_rng(_SEED), reconstruct(evidence)
-    before = {group: draw(of_group(evidence, group), hyperparameters, random, _CURVES) for group in RIDER_GROUPS}
+    before = {
+        group: drawn_curves(of_group(evidence, group), hyperparameters, random, _CURVES) for group in RIDER_GROUPS
+    }
     after = {group: sampled_coefficients(group) for group in RIDER_GROUPS}
     with_text = Recovered({group: Posterior.of(curves) for group, curves in after.items()}, after)
     predictions = left_out(evidence, hyperparameters)
@@ -112,9 +114,9 @@ def left_out(evidence: list[Evidence], hyperparameters: Hyperparameters) -> list
     return predictions
 
 
-def scores(rows: list[Evidence], hyperparameters: Hyperparameters) -> FloatArray:
+def predictive_scores(rows: list[Evidence], hyperparameters: Hyperparameters) -> FloatArray:
     """Those of one group's printed powers by the numbers alone, in closed form."""
-    system, names, misses = System.of(rows), [row.name for row in rows], []
+    system, names, misses = EvidenceSystem.of(rows), [row.name for row in rows], []
     for row, _, without in _leave_outs(rows):
         out = np.isin(names, [*without])
         mean, deviation = system.left_out(names.index(row.name), out, hyperparameters)

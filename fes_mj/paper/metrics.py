@@ -107,8 +107,8 @@ def smoothing_weights(result: QuasiStatic, width: float) -> FloatArray:
         rate = result.motion.joint_rate[joint]
         from_end = np.minimum(angle - angle.min(), angle.max() - angle)
         lost = (1 - np.clip(from_end / width, 0, 1)) / 2  # of the difference to the other branch
-        own, opposite = (fourier(result.torque.source_angle(joint, angle, sign * rate)) for sign in (1, -1))
-        parts.append((rate * lost) @ (own - opposite) / rate.size)
+        same, opposite = (fourier(result.torque.source_angle(joint, angle, sign * rate)) for sign in (1, -1))
+        parts.append((rate * lost) @ (same - opposite) / rate.size)
     return result.cadence * np.concatenate(parts)
 
 

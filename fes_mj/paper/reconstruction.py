@@ -83,7 +83,7 @@ class Posterior:
         return self.predict_all(of_joint(joint, fourier(crank_angle)))
 
 
-class System(NamedTuple):
+class EvidenceSystem(NamedTuple):
     """Evidence as linear measurements: weights on the Fourier coefficients (rows, 98), values and errors (rows,).
 
     six_bar: whether a row is a six-bar's power, shape (rows,).
@@ -95,7 +95,7 @@ class System(NamedTuple):
     six_bar: BoolArray
 
     @classmethod
-    def of(cls, rows: list[Evidence]) -> "System":
+    def of(cls, rows: list[Evidence]) -> "EvidenceSystem":
         six_bar = [row.quantity == "power" and row.design != "trt" for row in rows]
         columns = ([functional(row) for row in rows], [row.value for row in rows], [row.error for row in rows], six_bar)
         return cls(*map(np.array, columns))
@@ -153,25 +153,27 @@ def left_out_misses(rows: list[Evidence], hyperparameters: Hyperparameters) -> F
     Never smaller than the residual in units of the row's error, whose sign it has (Rasmussen and Williams, Gaussian
     Processes for Machine Learning, 2006, Eq. 5.12).
     """
-    system = System.of(rows)
+    system = EvidenceSystem.of(rows)
     precision = np.linalg.inv(system.covariance(hyperparameters))
     return precision @ system.values / np.sqrt(np.diag(precision))
 
 
 def condition(rows: list[Evidence], hyperparameters: Hyperparameters) -> Posterior:
     """Posterior of one group's curves given its evidence (Gaussian conditioning on linear measurements)."""
-    system, prior = System.of(rows), hyperparameters.prior_variance()
+    system, prior = EvidenceSystem.of(rows), hyperparameters.prior_variance()
     gain = system.gain(hyperparameters)
     return Posterior(gain @ system.values, np.diag(prior) - gain @ (system.weights * prior))
 
 
-def draw(rows: list[Evidence], hyperparameters: Hyperparameters, random: np.random.Generator, count: int) -> FloatArray:
+def drawn_curves(
+    rows: list[Evidence], hyperparameters: Hyperparameters, random: np.random.Generator, count: int
+) -> FloatArray:
     """Curves from one group's posterior, N m, shape (count, 98).
 
     A curve of the prior, corrected by what it, with an error of its own, misses of the evidence (Matheron's rule): no
     factor of a covariance, whose sign or order would depend on the linear algebra underneath.
     """
-    system, deviation = System.of(rows), np.sqrt(hyperparameters.prior_variance())
+    system, deviation = EvidenceSystem.of(rows), np.sqrt(hyperparameters.prior_variance())
     curves = deviation * random.standard_normal((count, deviation.size))
     noise = random.standard_normal((count, len(rows))) @ np.linalg.cholesky(system.noise(hyperparameters)).T
     return np.asarray(curves + (system.values - curves @ system.weights.T - noise) @ system.gain(hyperparameters).T)
@@ -182,10 +184,10 @@ def choose_hyperparameters(rows: list[Evidence]) -> Hyperparameters:
 
     More digits than the likelihood knows, and the same wherever the search runs.
     """
-    return most_likely([System.of(of_group(rows, group)) for group in RIDER_GROUPS])
+    return most_likely([EvidenceSystem.of(of_group(rows, group)) for group in RIDER_GROUPS])
 
 
-def most_likely(systems: list[System]) -> Hyperparameters:
+def most_likely(systems: list[EvidenceSystem]) -> Hyperparameters:
     """Maximum of the marginal likelihood of these systems together; otherwise as choose_hyperparameters."""
 
     def cost(logs: FloatArray) -> float:

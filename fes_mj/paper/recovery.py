@@ -16,8 +16,8 @@ from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.moments.uncertainty import with_sd
 from fes_mj.paper.captions import Rows, table
 from fes_mj.paper.evidence import Evidence, functional, of_group, of_joint
-from fes_mj.paper.known import Known, rms, scores, weights_of
-from fes_mj.paper.reconstruction import Hyperparameters, Posterior, System, condition, most_likely
+from fes_mj.paper.known import Known, predictive_scores, rms, weights_of
+from fes_mj.paper.reconstruction import EvidenceSystem, Hyperparameters, Posterior, condition, most_likely
 from fes_mj.paper.statements import allowed_share, load_statements
 
 
@@ -93,14 +93,14 @@ def sensitivity_table(known: Known) -> Rows:
     priors |= {f"amplitude {factor:g} x": replace(chosen, amplitude=factor * chosen.amplitude) for factor in (0.5, 2.0)}
     priors |= {f"six-bars' hip off by {d:g} N m": replace(chosen, discrepancy=d) for d in (1.0, 3.0)}
     cases = [(title, data, dict.fromkeys(RIDER_GROUPS, prior)) for title, prior in priors.items()]
-    apart = {group: most_likely([System.of(rows)]) for group, rows in data.items()}
+    apart = {group: most_likely([EvidenceSystem.of(rows)]) for group, rows in data.items()}
     cases.append(("a prior for each group", data, apart))
     errors = {key: math.hypot(0.1, rms(change)) for key, change in known.rounding.items()}  # and that of reading curves
     rounded = {
         group: [replace(row, error=errors.get((row.design, group), row.error)) for row in rows]
         for group, rows in data.items()
     }
-    common = most_likely([System.of(rows) for rows in rounded.values()])
+    common = most_likely([EvidenceSystem.of(rows) for rows in rounded.values()])
     cases.append(("six-bars' errors by their rounding", rounded, dict.fromkeys(RIDER_GROUPS, common)))
     return [_case(*case) for case in cases]
 
@@ -112,8 +112,8 @@ def _case(title: str, data: dict[str, list[Evidence]], priors: dict[str, Hyperpa
         " and ".join(dict.fromkeys(f"{getattr(prior, name):.3g}" for prior in priors.values()))
         for name in ("length", "amplitude")
     ]
-    likelihood = sum(System.of(rows).log_likelihood(prior) for _, rows, prior in pairs)
-    misses = [float(rms(scores(rows, prior))) for _, rows, prior in pairs]
+    likelihood = sum(EvidenceSystem.of(rows).log_likelihood(prior) for _, rows, prior in pairs)
+    misses = [float(rms(predictive_scores(rows, prior))) for _, rows, prior in pairs]
     shares = [100 * allowed_share(rows, group, prior) for group, rows, prior in pairs]
     return (title, *shape, likelihood, *misses, *shares, *(_gain(condition(rows, prior)) for _, rows, prior in pairs))
 

@@ -17,13 +17,13 @@ from fes_mj.common.writing import json_text, require_results, write_results
 from fes_mj.paper import error_budget, gains, identification, metrics, recovery, riding, tables
 from fes_mj.paper.captions import figure_section, page_names, page_title
 from fes_mj.paper.runs import Runs, run_all
-from fes_mj.paper.work_shares import share_table
+from fes_mj.paper.work_shares import work_share_table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 DPI = 150  # of the PNG; the SVG is for print
-RECORD = "reproduction.json"
+RECORD_FILE = "reproduction.json"
 
 
 def reproduce(folder: Path, svg: bool = False, silent: bool = False) -> list[Path]:
@@ -36,7 +36,7 @@ def reproduce(folder: Path, svg: bool = False, silent: bool = False) -> list[Pat
     from fes_mj.paper.figures import FIGURES
 
     drawn = [f"figures/{name}.{kind}" for name in FIGURES for kind in ("png", *(["svg"] if svg else []))]
-    require_results(folder, [*(f"{name}.md" for name in page_names()), *drawn, RECORD])
+    require_results(folder, [*(f"{name}.md" for name in page_names()), *drawn, RECORD_FILE])
     runs = run_all(silent)
     pages = _pages(runs)
     contents: dict[Path, str | bytes] = {
@@ -52,7 +52,7 @@ def reproduce(folder: Path, svg: bool = False, silent: bool = False) -> list[Pat
         "timestep_s": {" ".join(map(str, run)): case.simulation.timestep for run, case in runs.dynamic.items()},
         **{name: {table.title: table.records() for table in tables} for name, tables in pages.items()},
     }
-    contents[folder / RECORD] = json_text(record)
+    contents[folder / RECORD_FILE] = json_text(record)
     write_results(contents)
     return [*contents]
 
@@ -61,7 +61,7 @@ def _pages(runs: Runs) -> dict[str, list[Table]]:
     """Tables of every page by its name."""
     moments = (
         *(recovery.evidence_table, recovery.left_out_table, recovery.calibration_table, recovery.sensitivity_table),
-        *(recovery.statement_table, recovery.knee_table, share_table, recovery.rounding_table),
+        *(recovery.statement_table, recovery.knee_table, work_share_table, recovery.rounding_table),
     )
     ranges = identification.ranges_table()
     of_powers = (tables.answer_table, tables.power_table, tables.gain_table, tables.motion_table)

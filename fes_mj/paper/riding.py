@@ -32,14 +32,14 @@ from fes_mj.riding.stimulated import StimulatedRider, stimulated_rider
 from fes_mj.riding.trace import Trace, ride as solved
 from fes_mj.riding.verdict import FASTEST_CADENCE
 
-DRAWS = 24  # of all; a standard deviation of so many is known to a seventh of itself
+RIDE_DRAWS = 24  # of all; a standard deviation of so many is known to a seventh of itself
 START_DRAWS = 4  # of these, in the search for starts, which takes some thirty times as long as a ride; to two fifths
-ANGLES = 8  # crank angles over half a turn, from which it is tried to start
+TRIED_ANGLES = 8  # crank angles over half a turn, from which it is tried to start
 SHORT = 20.0  # s: what rides so long from rest goes on
 RATIOS = np.geomspace(0.125, 4.0, 21)  # times the design's own gear ratio; of these those that can be run
 SLOPES = (0.0, 0.02)  # on which the best gear ratio is sought
 AT_END = " (end of the range)"
-SEED = 2007
+RIDE_SEED = 2007
 THREADS = 2  # the compiled solver lets others run beside it
 
 
@@ -81,14 +81,14 @@ def ride_all(silent: bool) -> list[Riding]:
     return [_riding(load_design(name), group, muscles[group], kind) for group, name, kind in cases]
 
 
-def drawn_rides(ride: Ride, muscles: Muscles, count: int = DRAWS) -> list[Ride]:
+def drawn_rides(ride: Ride, muscles: Muscles, count: int = RIDE_DRAWS) -> list[Ride]:
     """A ride with the rider, the dimensions and the legs of each draw; without those that cannot turn or be driven."""
     assert isinstance(ride.drive, StimulatedRider)
     design, group = ride.design, muscles.riders.name
     drawn = realisations(design, load_moments(group), count)
     values = drawn.dimensions | drawn.legs
     members = np.linspace(0, len(muscles.riders) - 1, count).astype(int)  # which are independent of each other
-    heavier = np.exp(budget_priors()[MASSES]["log_sd"] * np.random.default_rng(SEED).standard_normal(count))
+    heavier = np.exp(budget_priors()[MASSES]["log_sd"] * np.random.default_rng(RIDE_SEED).standard_normal(count))
     rides = []
     for row, (member, factor) in enumerate(zip(members, heavier, strict=True)):
         other = replaced(design, {name: float(column[row]) for name, column in values.items()})
@@ -122,22 +122,22 @@ def _riding(design: Design, group: str, muscles: Muscles, transmission: str) -> 
             balanced,
             [*threads.map(solved, level)],
             [*threads.map(solved, uphill)],
-            [*threads.map(lambda ride: starts(ride, ANGLES), brief)],
+            [*threads.map(lambda ride: starts(ride, TRIED_ANGLES), brief)],
             {slope: _fastest([*threads.map(solved, rides)]) for slope, rides in on_slopes.items()},
         )
 
 
 def _fastest(traces: list[Trace]) -> Gear | None:
     """The best of the gears of RATIOS that need no cadence beyond what is known, and of which MuJoCo says the same."""
-    known = [trace for trace in traces if trace.mean_speed and (trace.cadence or 0.0) <= FASTEST_CADENCE]
-    for trace in sorted(known, key=lambda trace: -(trace.mean_speed or 0.0)):
+    within = [trace for trace in traces if trace.mean_speed and (trace.cadence or 0.0) <= FASTEST_CADENCE]
+    for trace in sorted(within, key=lambda trace: -(trace.mean_speed or 0.0)):
         if RideCase(replace(trace.ride, duration=SHORT)).agrees:
             at_end = trace in (traces[0], traces[-1])
             return Gear(trace.ride.design.linkage.gear_ratio, trace.mean_speed or 0.0, at_end)
     return None
 
 
-@table("riding", draws=str(DRAWS))
+@table("riding", draws=str(RIDE_DRAWS))
 def speed_table(rides: list[Riding]) -> Rows:
     """What each settles to on the flat, and whether it rides on the slope that its mean power balances."""
     for riding in rides:
@@ -153,7 +153,7 @@ def speed_table(rides: list[Riding]) -> Rows:
         )
 
 
-@table("starts", angles=str(2 * ANGLES), draws=str(START_DRAWS))
+@table("starts", angles=str(2 * TRIED_ANGLES), draws=str(START_DRAWS))
 def start_table(rides: list[Riding]) -> Rows:
     """From which crank angles each starts, the launch it needs, the slope it climbs."""
     for riding in rides:
@@ -188,5 +188,5 @@ def transmission_table(rides: list[Riding]) -> Rows:
 def _with_scatter(of: Callable[[Any], float | None], rides: Sequence[Any], digits: int = 1) -> str | None:
     """The value of the best known muscles and the standard deviation of those drawn; None without the one."""
     best, *drawn = map(of, rides)
-    known = [value for value in drawn if value is not None]
-    return None if best is None else with_sd(best, float(np.std(known, ddof=1)) if len(known) > 1 else None, digits)
+    values = [value for value in drawn if value is not None]
+    return None if best is None else with_sd(best, float(np.std(values, ddof=1)) if len(values) > 1 else None, digits)

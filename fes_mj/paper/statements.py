@@ -23,11 +23,11 @@ from fes_mj.moments.joint_moments import RIDER_GROUPS
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.moments.uncertainty import instant_power_weights
 from fes_mj.paper.evidence import Evidence
-from fes_mj.paper.reconstruction import Hyperparameters, draw
+from fes_mj.paper.reconstruction import Hyperparameters, drawn_curves
 
-TEXT = DATA / "text.toml"
+TEXT_FILE = DATA / "text.toml"
 HIGH = 0.5  # of the highest power: what reaches it is a high peak; the width of a peak is usually taken there
-SEED = 2022
+STATEMENT_SEED = 2022
 _ANGLES = np.radians(np.arange(0.0, 360.0, 2.0))
 _SECOND_HALF = (_ANGLES - PAPER_TRICYCLE.top_dead_centre) % (2 * np.pi) >= np.pi
 _BATCH = 20_000  # curves at a time
@@ -80,7 +80,7 @@ class Statement:
 
 def load_statements(group: str) -> list[Statement]:
     """What the text says of the figures of one group."""
-    rows = read_toml(TEXT, "statements").content["statement"]
+    rows = read_toml(TEXT_FILE, "statements").content["statement"]
     return [Statement(**row) for row in rows if row["group"] == group]
 
 
@@ -101,7 +101,7 @@ def allowed_curves(
             return np.concatenate(kept)[:count], allowed / drawn
         if drawn >= _MOST:
             break
-    raise InputError(f"{TEXT}: {allowed} of {drawn} curves fulfil what the text says of the figures of {group}")
+    raise InputError(f"{TEXT_FILE}: {allowed} of {drawn} curves fulfil what the text says of the figures of {group}")
 
 
 def allowed_share(rows: list[Evidence], group: str, hyperparameters: Hyperparameters, batches: int = 5) -> float:
@@ -112,9 +112,9 @@ def allowed_share(rows: list[Evidence], group: str, hyperparameters: Hyperparame
 
 def _batches(rows: list[Evidence], group: str, hyperparameters: Hyperparameters) -> Iterator[FloatArray]:
     """What the text leaves of one batch of curves after the other."""
-    statements, random = load_statements(group), np.random.default_rng([SEED, RIDER_GROUPS.index(group)])
+    statements, random = load_statements(group), np.random.default_rng([STATEMENT_SEED, RIDER_GROUPS.index(group)])
     while True:
-        curves = draw(rows, hyperparameters, random, _BATCH)
+        curves = drawn_curves(rows, hyperparameters, random, _BATCH)
         for statement in statements:
             curves = curves[statement.holds(curves)]
         yield curves

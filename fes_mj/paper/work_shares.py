@@ -13,7 +13,7 @@ from fes_mj.moments.uncertainty import with_sd
 from fes_mj.paper.captions import Rows, table
 from fes_mj.paper.evidence import own_leg_motion
 from fes_mj.paper.known import BASES, Known
-from fes_mj.paper.statements import TEXT
+from fes_mj.paper.statements import TEXT_FILE
 
 ACTIONS = {
     "knee extensors": ("knee", 1),
@@ -62,9 +62,9 @@ def shares(curves: FloatArray, leg: float, muscles: str) -> tuple[FloatArray, Fl
 
 
 @table("share", reading=[f"{reading}, {basis}" for reading in ("net", "concentric") for basis in BASES])
-def share_table(known: Known) -> Rows:
+def work_share_table(known: Known) -> Rows:
     """What the abstract says beside both readings, by curves of the numbers alone and with the text."""
-    for row in read_toml(TEXT, "statements").content["share"]:
+    for row in read_toml(TEXT_FILE, "statements").content["share"]:
         group, muscles = row["group"], row["muscles"]
         counted = [shares(recovered.curves[group], row["leg_m"], muscles) for recovered in known.by_basis.values()]
         values = (basis for reading in zip(*counted, strict=True) for basis in reading)

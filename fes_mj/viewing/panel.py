@@ -20,7 +20,7 @@ from fes_mj.linkage.design import Design
 from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.muscles.drive import Muscles
 from fes_mj.riding.stimulated import StimulatedRider
-from fes_mj.riding.verdict import verdict as what_became
+from fes_mj.riding.verdict import verdict
 from fes_mj.viewing.charts import any_letters, plot_power
 from fes_mj.viewing.stage import PLOT_WIDTH, SIDE
 
@@ -104,7 +104,7 @@ def _draw_power(figure: Figure, case: Case, answer: Answer | None) -> Axes:
     for row, (name, value, colour) in enumerate(facts):
         figure.text(_LEFT, 0.165 - 0.034 * row, name, size=12, color=colour)
         figure.text(_RIGHT, 0.165 - 0.034 * row, value, size=12, color=colour, ha="right", family="DejaVu Sans")
-    write_verdict(figure, verdict(case), case.agrees)
+    write_verdict(figure, agreement(case), case.agrees)
     return axes
 
 
@@ -113,7 +113,7 @@ def _driver(drive: JointMoments | Muscles | StimulatedRider) -> str:
     return f"joint moments {drive.name}" if isinstance(drive, JointMoments) else drive.driver
 
 
-def verdict(case: Case) -> str:
+def agreement(case: Case) -> str:
     """What agrees, or which checks fail."""
     failed = [check.name.replace("_", " ") for check in case.checks if not check.ok]
     if failed:
@@ -149,6 +149,6 @@ def _draw_ride(figure: Figure, case: RideCase, end: float) -> list[Axes]:
     road = f"{ride.transmission}, {100 * ride.road.slope:.3g} % slope; {part}"
     write_title(figure, ride.design, f"driven by {_driver(ride.drive)}; {road}")
     at_end = "" if trace.mean_speed is None else f": {trace.mean_speed / KMH:.1f} km/h over its last turns"
-    result = f"{what_became(trace).word.replace('-', ' ')}{at_end}; the two solvers agree"
+    result = f"{verdict(trace).word.replace('-', ' ')}{at_end}; the two solvers agree"
     write_verdict(figure, result if case.agrees else "the two solvers DO NOT agree", case.agrees)
     return [speed, power]

@@ -67,10 +67,10 @@ def render_video(
     else:
         speed = slow_motion(case.cadence) if speed is None else speed
         shown = steps_shown(case.simulation, speed)
-        write_video(path, pictures(case, shown, speed, answer), len(shown), quiet, REPEATS)
+        write_video(path, turn_frames(case, shown, speed, answer), len(shown), quiet, REPEATS)
 
 
-def pictures(case: Case, steps: IntArray, speed: float, answer: Answer | None = None) -> Iterator[Picture]:
+def turn_frames(case: Case, steps: IntArray, speed: float, answer: Answer | None = None) -> Iterator[Picture]:
     """The frames at these steps of the first turn, as render_video has them, shape (SIDE, SIDE + PLOT_WIDTH, 3)."""
     from fes_mj.viewing.panel import power_panel
 

@@ -9,7 +9,7 @@ from fes_mj.linkage.design import WHEEL_DIAMETER, Design
 from fes_mj.linkage.shapes import BACKREST, lowest_point
 from fes_mj.simulation.appearance import Spec
 
-CLEARANCE = 0.1  # m between the lowest point of all that moves and the road, unless the frame says where that is
+ROAD_CLEARANCE = 0.1  # m between the lowest point of all that moves and the road, unless the frame says where that is
 FRONT_DIAMETER, BEHIND, TRACK = 0.41, 0.7 * BACKREST, 0.75  # m: of the front wheel; of the rear axle behind the hip
 _RIM, _SPOKE, _PIECES, _SPOKES = 0.012, 0.004, 32, 5
 _COLOUR = (0.22, 0.23, 0.26, 1.0)
@@ -17,8 +17,8 @@ _COLOUR = (0.22, 0.23, 0.26, 1.0)
 
 def ground(design: Design) -> float:
     """Height of the road above the hip, m."""
-    known = design.frame.ground_height
-    return lowest_point(design) - CLEARANCE if known is None else known
+    height = design.frame.ground_height
+    return lowest_point(design) - ROAD_CLEARANCE if height is None else height
 
 
 def add_wheels(spec: Spec, design: Design) -> dict[str, float]:

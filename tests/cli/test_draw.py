@@ -9,7 +9,7 @@ import pytest
 
 import fes_mj
 from fes_mj.cli.app import run
-from fes_mj.cli.draw import Material
+from fes_mj.cli.draw import MaterialName
 from fes_mj.statics.materials import materials
 from fes_mj.statics.sizes import FORCE_POINTS, build
 
@@ -92,4 +92,4 @@ def test_bad_input(arguments: list[str], names: list[str], tmp_path: Path, capsy
 
 
 def test_the_materials_of_the_command_line_are_those_that_there_are() -> None:
-    assert get_args(Material) == materials()
+    assert get_args(MaterialName) == materials()

@@ -133,7 +133,7 @@ def test_an_answer_that_fails_is_an_answer(server: Server, answers: Answers) -> 
 
 
 def test_half_of_a_request_is_not_waited_for(server: Server, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(server_module, "PATIENCE", 0.2)
+    monkeypatch.setattr(server_module, "REQUEST_PATIENCE", 0.2)
     head = f"POST /start HTTP/1.1\r\nHost: localhost\r\nX-Token: {token(server)}\r\n"
     for half, answer in (("", b""), (head, b""), (f"{head}Content-Length: 9\r\n\r\n{{", b"HTTP/1.1 408")):
         with socket.create_connection(("127.0.0.1", port(server)), timeout=30) as connection:

@@ -14,7 +14,7 @@ from fes_mj.budget.unknowns import budget_priors
 from fes_mj.linkage.design_file import DESIGNS, SIX_BARS
 from fes_mj.moments.joint_moments import RIDER_GROUPS
 from fes_mj.moments.uncertainty import with_sd
-from fes_mj.paper.error_budget import DRAWS, GAINS, TIMES
+from fes_mj.paper.error_budget import GAINS, PAPER_DRAWS, TIMES
 from fes_mj.statics.turn import quasi_static
 
 PAGE = json.loads((Path(__file__).parents[2] / "results" / "reproduction.json").read_text(encoding="utf-8"))[
@@ -42,7 +42,7 @@ def test_rows_are_todays() -> None:
     drawn = {}
     for name in ("d1", "trt"):
         result = quasi_static(fes_mj.load_design(name), fes_mj.load_moments("p1p3"))
-        drawn[name] = UncertainPower(result, DRAWS).at(together(unknowns(), DRAWS, TIMES))
+        drawn[name] = UncertainPower(result, PAPER_DRAWS).at(together(unknowns(), PAPER_DRAWS, TIMES))
         page = next(row for row in BUDGETS if (row["design"].lower(), row["group"]) == (name, "p1p3"))
         assert page["all together, W"] == with_sd(*Spread.of(drawn[name])[:2], 1)
     page = next(row for row in GAIN if (row["design"], row["group"]) == ("D1", "p1p3"))

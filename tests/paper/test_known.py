@@ -5,7 +5,7 @@ import pytest
 
 from fes_mj.moments.joint_moments import RIDER_GROUPS
 from fes_mj.paper.evidence import functional, load_evidence, of_group
-from fes_mj.paper.known import LeftOut, left_out, rms, scores
+from fes_mj.paper.known import LeftOut, left_out, predictive_scores, rms
 from fes_mj.paper.reconstruction import Hyperparameters, choose_hyperparameters, condition
 
 
@@ -19,7 +19,7 @@ def predictions() -> list[LeftOut]:
 def test_scores_in_closed_form_are_those_of_conditioning(predictions: list[LeftOut]) -> None:
     evidence = load_evidence()
     for group in RIDER_GROUPS:
-        quick = scores(of_group(evidence, group), choose_hyperparameters(evidence))
+        quick = predictive_scores(of_group(evidence, group), choose_hyperparameters(evidence))
         long = [out.scores[0] for out in predictions if out.row.group == group]
         assert quick == pytest.approx(long, rel=1e-6, abs=1e-9)
 

@@ -12,9 +12,9 @@ from fes_mj.moments.files import sampled_coefficients
 from fes_mj.moments.joint_moments import RIDER_GROUPS
 from fes_mj.paper.evidence import functional, load_evidence, of_group
 from fes_mj.paper.reconstruction import (
+    EvidenceSystem,
     Hyperparameters,
     Posterior,
-    System,
     choose_hyperparameters,
     condition,
     left_out_misses,
@@ -45,7 +45,7 @@ def test_what_ships_is_what_evidence_and_text_give(group: str, chosen: Hyperpara
 def test_the_likelihood_has_one_maximum_inside_its_bounds(chosen: Hyperparameters) -> None:
     """On a grid beyond the bound of the length no prior is more likely."""
     evidence = load_evidence()
-    systems = [System.of(of_group(evidence, group)) for group in RIDER_GROUPS]
+    systems = [EvidenceSystem.of(of_group(evidence, group)) for group in RIDER_GROUPS]
     best = sum(system.log_likelihood(chosen) for system in systems)
     for length in np.geomspace(0.2, 2.0, 25):
         for amplitude in np.geomspace(1, 40, 25):

@@ -108,9 +108,9 @@ def test_rows_have_the_units_of_their_heads() -> None:
 def test_a_riding_of_few_draws(monkeypatch: pytest.MonkeyPatch) -> None:
     """Every table of the page from one design."""
     pytest.importorskip("numba")
-    monkeypatch.setattr(riding, "DRAWS", 2)
+    monkeypatch.setattr(riding, "RIDE_DRAWS", 2)
     monkeypatch.setattr(riding, "START_DRAWS", 0)
-    monkeypatch.setattr(riding, "ANGLES", 2)
+    monkeypatch.setattr(riding, "TRIED_ANGLES", 2)
     monkeypatch.setattr(riding, "RATIOS", np.array([0.8, 1.0]))
     monkeypatch.setattr(riding, "SHORT", 2.0)
     monkeypatch.setattr(riding, "Ride", partial(Ride, duration=4.0))

@@ -12,7 +12,7 @@ from fes_mj.moments.fourier import fourier
 from fes_mj.moments.joint_moments import RIDER_GROUPS
 from fes_mj.paper import statements
 from fes_mj.paper.evidence import load_evidence, of_group
-from fes_mj.paper.reconstruction import choose_hyperparameters, condition, draw
+from fes_mj.paper.reconstruction import choose_hyperparameters, condition, drawn_curves
 from fes_mj.paper.statements import QUANTITIES, Statement, allowed_curves, load_statements
 from fes_mj.statics.turn import quasi_static
 
@@ -58,7 +58,7 @@ def test_drawn_curves_have_the_posteriors_mean_and_covariance(group: str) -> Non
     """Against the closed form, in standard errors of 20,000 draws; five of them for 98 means at once."""
     evidence, count = load_evidence(), 20_000
     rows, prior = of_group(evidence, group), choose_hyperparameters(evidence)
-    posterior, curves = condition(rows, prior), draw(rows, prior, np.random.default_rng(7), count)
+    posterior, curves = condition(rows, prior), drawn_curves(rows, prior, np.random.default_rng(7), count)
     deviation = np.sqrt(np.diag(posterior.covariance))
     assert np.all(np.abs(curves.mean(axis=0) - posterior.mean) < 5 * deviation / math.sqrt(count))
     features = np.concatenate([fourier(np.radians(np.arange(0, 360, 45)))] * 2, axis=1)

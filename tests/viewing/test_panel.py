@@ -10,7 +10,7 @@ pytest.importorskip("matplotlib")
 pytest.importorskip("PIL")
 from matplotlib.figure import Figure
 
-from fes_mj.viewing.panel import verdict, write_title, write_verdict
+from fes_mj.viewing.panel import agreement, write_title, write_verdict
 
 
 @pytest.mark.parametrize("name", ["d1", "a-design-with-a-name-that-somebody-made-of-all-its-dimensions-2026-11-26"])
@@ -26,8 +26,8 @@ def test_titles_stay_inside(name: str) -> None:
 
 def test_the_verdict_is_of_the_means_with_their_difference() -> None:
     case = fes_mj.Case(fes_mj.load_design("r1"), fes_mj.load_moments())
-    assert verdict(case) == f"mean power agrees: difference {case.difference_text}"
+    assert agreement(case) == f"mean power agrees: difference {case.difference_text}"
     coarse = fes_mj.Case(fes_mj.load_design("r2"), fes_mj.load_moments(), timestep=4e-3)
     failed = [check.name.replace("_", " ") for check in coarse.checks if not check.ok]
     assert failed
-    assert verdict(coarse) == f"check failed: {', '.join(failed)}"
+    assert agreement(coarse) == f"check failed: {', '.join(failed)}"
