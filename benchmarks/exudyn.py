@@ -128,7 +128,7 @@ def measure(name: str) -> dict[str, dict[str, float]]:
         start = time.perf_counter()
         turns[who](steps[who])
         times[who].append(time.perf_counter() - start)
-    seconds = {who: float(np.median(each)) for who, each in times.items()}
+    seconds = {who: float(np.median(runs)) for who, runs in times.items()}
     return {
         who: {"steps": n, "rms_W": error(design, turns[who], n), "seconds": seconds[who]} for who, n in steps.items()
     }

@@ -182,11 +182,11 @@ def simulated() -> dict[str, np.ndarray]:
     full = mujoco.mjtState.mjSTATE_FULLPHYSICS
     states = np.empty((TURNS, mujoco.mj_stateSize(models[0], full)))
     control = np.zeros((TURNS, steps, models[0].nu))
-    for model, state, given in zip(models, states, control, strict=True):
+    for model, state, control_row in zip(models, states, control, strict=True):
         data = mujoco.MjData(model)
         mujoco.mj_resetDataKeyframe(model, data, 0)
         mujoco.mj_getState(model, data, state, full)
-        given[:] = data.ctrl
+        control_row[:] = data.ctrl
     workspace = [mujoco.MjData(models[0]) for _ in range(THREADS)]
     own_data = [mujoco.MjData(model) for model in models]  # made beforehand, as the rollout's workspace is
 

@@ -121,11 +121,11 @@ class RideEnv(gymnasium.Env[NDArray[np.float64], NDArray[Any]]):
     def _pull(self, asked: NDArray[Any]) -> None:
         """Let the muscles of both legs go on by a TICK, and pull."""
         angle, rate = self.data.qpos, self.data.qvel
-        for leg, own, ((_, *knee), (_, *hip)) in zip(
+        for leg, leg_pulses, ((_, *knee), (_, *hip)) in zip(
             self.legs, asked.reshape(2, -1).tolist(), self.joints, strict=True
         ):
             state = (float(values[joint[row]]) for row, values in enumerate((angle, rate)) for joint in (knee, hip))
-            moments = joint_moments(self.muscles, leg.advance(own), *state)
+            moments = joint_moments(self.muscles, leg.advance(leg_pulses), *state)
             self.data.qfrc_applied[[knee[1], hip[1]]] = moments
 
     def _observation(self) -> NDArray[np.float64]:

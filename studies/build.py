@@ -35,10 +35,10 @@ POINTS = 720
 
 def designs() -> list[Design]:
     """The paper's, and all that searches found."""
-    found = (RESULTS / "optimization", RESULTS / "optimization" / "buildable")
+    folders = (RESULTS / "optimization", RESULTS / "optimization" / "buildable")
     return [
         *map(load_design, DESIGNS),
-        *(load_design(path) for place in found for path in sorted(place.glob("*.toml"))),
+        *(load_design(path) for place in folders for path in sorted(place.glob("*.toml"))),
     ]
 
 
@@ -111,11 +111,11 @@ def real_links(turns: list[QuasiStatic]) -> Table:
     rows = []
     for turn in track(turns, "real links"):
         try:
-            made = build(turn)
+            sized = build(turn)
         except InputError:
             continue
-        cases = [Case(design, turn.moments) for design in (turn.design, made.design)]
-        for case, kind in zip(cases, ("bars of 1 kg/m", made.material.name), strict=True):
+        cases = [Case(design, turn.moments) for design in (turn.design, sized.design)]
+        for case, kind in zip(cases, ("bars of 1 kg/m", sized.material.name), strict=True):
             run = case.simulation
             swing = float(energy_swing(run.power, run.cadence))
             rows.append((turn.design.name, kind, run.power_mean, float(run.power.max() - run.power.min()), swing,

@@ -84,8 +84,8 @@ def trial(group: str, name: str) -> tuple[Any, ...]:
     design, moments = load_design(BUILDABLE / f"{name}.toml"), load_moments(group)
     case = Case(design, moments)
     try:
-        made = build(quasi_static(design, moments))
-        mass, feet = sum(made.mass.values()), 1e3 * made.stack.feet
+        sized = build(quasi_static(design, moments))
+        mass, feet = sum(sized.mass.values()), 1e3 * sized.stack.feet
     except InputError:
         mass, feet = None, None
     verdicts = []
@@ -124,8 +124,8 @@ def tried() -> Table:
 
 def passed() -> Table:
     """Which limits the paper's designs and those found without them keep, under the moments that each was made for."""
-    found = sorted(FOLDER.glob("*.toml"))
-    names = [*DESIGNS, *map(str, found)]
+    files = sorted(FOLDER.glob("*.toml"))
+    names = [*DESIGNS, *map(str, files)]
     broken = {}
     for name in track(names, "limits"):
         group = RIDER_GROUPS[1] if Path(name).stem.startswith(("r2", "d2")) else RIDER_GROUPS[0]
@@ -134,10 +134,10 @@ def passed() -> Table:
     rows: list[tuple[Any, ...]] = []
     for limit in LIMITS:
         kept = ["no" if limit in broken[name] else "yes" for name in DESIGNS]
-        rows.append((limit, *kept, sum(limit not in broken[str(path)] for path in found)))
+        rows.append((limit, *kept, sum(limit not in broken[str(path)] for path in files)))
     kept = ["no" if broken[name] else "yes" for name in DESIGNS]
-    rows.append(("all", *kept, sum(not broken[str(path)] for path in found)))
-    columns = {"limit": "", **{name.upper(): "" for name in DESIGNS}, f"of {len(found)} found designs": "d"}
+    rows.append(("all", *kept, sum(not broken[str(path)] for path in files)))
+    columns = {"limit": "", **{name.upper(): "" for name in DESIGNS}, f"of {len(files)} found designs": "d"}
     note = "Found designs: those that were found under the paper's limits alone; each is in [build](../build.md)."
     return Table("Limits that designs keep which were made without them", columns, rows, note)
 

@@ -99,7 +99,7 @@ def move_freely(model: mujoco.MjModel, duration: float = DURATION) -> Freely:
 def row(name: str, variants: tuple[str, ...]) -> tuple[Any, ...]:
     """Of the table: the model as exported, and with each integrator at the step of a crank that is held."""
     model, design = lossless(name, variants), load_design(name)
-    own = move_freely(model)
+    free = move_freely(model)
     if "ride" not in variants:
         model.opt.timestep = 2 * math.pi / design.linkage.cadence / steps_per_turn(design, design.linkage.cadence)
     others = []
@@ -107,8 +107,8 @@ def row(name: str, variants: tuple[str, ...]) -> tuple[Any, ...]:
         model.opt.integrator = integrator
         motion = move_freely(model)
         others.append(100 * motion.drift if motion.drift < 1 else None)  # nor where it is not a number
-    described = (own.start, own.turns, own.fastest / RPM, 1e3 * own.timestep, 100 * own.drift, 1e6 * own.gap)
-    return (name.upper(), " ".join(variants), *described, *others, "ok" if own.ok else "FAILED")
+    described = (free.start, free.turns, free.fastest / RPM, 1e3 * free.timestep, 100 * free.drift, 1e6 * free.gap)
+    return (name.upper(), " ".join(variants), *described, *others, "ok" if free.ok else "FAILED")
 
 
 def main() -> int:

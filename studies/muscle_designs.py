@@ -70,9 +70,9 @@ def solved(group: str) -> list[Solved]:
     for name in names:
         design = load_design(name)
         static = MuscleStatic.solve(design, riders, design.linkage.cadence, "best")
-        own, _ = best_turn(riders, design, each_its_own=True)
+        each_best, _ = best_turn(riders, design, each_its_own=True)
         agrees = Case(design, Muscles(riders)).agrees
-        rows.append(Solved(Path(name).stem, static, own.power_mean[:, 0], rider_powers(design, riders), agrees))
+        rows.append(Solved(Path(name).stem, static, each_best.power_mean[:, 0], rider_powers(design, riders), agrees))
     return rows
 
 
@@ -80,11 +80,11 @@ def gains(group: str, designs: list[Solved]) -> Iterator[tuple[Any, ...]]:
     """Of each design over the best tricycle, member by member."""
     best = designs[0]
     for one in designs:
-        ratio, own = one.static.powers / best.static.powers, one.own / best.own
+        ratio, unshared = one.static.powers / best.static.powers, one.own / best.own
         quantiles = (float(value) for value in np.quantile(ratio, ENDS))
         with_all = one.drawn / best.drawn
         drawn = (float(value) for value in np.nanquantile(with_all, ENDS))
-        shares = (100 * float(np.mean(np.nan_to_num(gain) > 1)) for gain in (ratio, own, with_all))
+        shares = (100 * float(np.mean(np.nan_to_num(gain) > 1)) for gain in (ratio, unshared, with_all))
         leaves = ", ".join(Buildability.of(one.static).broken()) or "none"
         yield (group, one.name, one.static.cadence / RPM, one.static.power_mean, one.static.power_sd, *quantiles,
                *(shares if one is not best else (None,) * 3), *drawn, leaves, _word(one.agrees))  # fmt: skip
@@ -114,8 +114,8 @@ def people() -> Iterator[tuple[Any, ...]]:
 
 def _seated(design: Design) -> Iterator[Design]:
     """With each rider for whom it was searched, in his or her seat; as drawn first."""
-    found = json.loads((FOUND / f"{design.name}.json").read_text(encoding="utf-8"))
-    for rider in found["riders"]:
+    record = json.loads((FOUND / f"{design.name}.json").read_text(encoding="utf-8"))
+    for rider in record["riders"]:
         ground = design.linkage.ground + rider["forward_m"] - 1j * rider["up_m"]
         one = design.with_rider(thigh=rider["thigh"], shank=rider["shank"])
         yield one.with_linkage(ground=ground, seat_angle=math.radians(rider["seat_angle_deg"]))

@@ -49,9 +49,9 @@ def turns_of(values: FloatArray, measured_on: ReferenceTricycle, random: np.rand
 def tables() -> list[Table]:
     """How many of the true gains lie within intervals of the posterior, by six-bar; and how much is explained."""
     example, random = load_moments(ROOT / "examples" / "trial" / "trial.toml"), np.random.default_rng(11)
-    known = replace(Riders("truth", prior_draws(RIDERS, random), np.zeros(RIDERS)), measured_on=example.measured_on)
+    truth = replace(Riders("truth", prior_draws(RIDERS, random), np.zeros(RIDERS)), measured_on=example.measured_on)
     exact = measured_moments(example, HARMONICS)
-    seen = Candidates.of(known, exact._replace(covariance=np.zeros_like(exact.covariance) + 1e-9 * np.eye(2 * TERMS)))
+    seen = Candidates.of(truth, exact._replace(covariance=np.zeros_like(exact.covariance) + 1e-9 * np.eye(2 * TERMS)))
     designs, base = [load_design(name) for name in SIX_BARS], load_design("trt")
     ranks, shares, sharper = [], [], []
     for row in range(RIDERS):
@@ -60,10 +60,10 @@ def tables() -> list[Table]:
         members = moved(
             identify_riders(measured, random, CANDIDATES).flattened().members(MEMBERS), measured, random, STEPS
         )
-        found = gains(members, designs, base)
-        ranks.append(np.mean(found < gains(members, designs, base, actual=known.taken([row])), axis=1))
+        estimated = gains(members, designs, base)
+        ranks.append(np.mean(estimated < gains(members, designs, base, actual=truth.taken([row])), axis=1))
         shares.append(explained_share(members, trial))
-        sharper.append(found.std(axis=1))
+        sharper.append(estimated.std(axis=1))
     apart = np.abs(np.array(ranks) - 0.5)
     rows: list[tuple[Any, ...]] = []
     for name, column, deviation in zip(SIX_BARS, apart.T, np.median(sharper, axis=0), strict=True):

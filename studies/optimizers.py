@@ -78,20 +78,20 @@ def summarise(target: str, method: str, results: list[SearchResult], reference: 
 
 def at_budget(result: SearchResult, budget: int) -> SearchResult:
     """What a search had found after `budget` evaluations."""
-    known = result.history[result.history[:, 0] <= budget]
-    merit = float(known[-1, 1]) if len(known) else -np.inf
+    history = result.history[result.history[:, 0] <= budget]
+    merit = float(history[-1, 1]) if len(history) else -np.inf
     return replace(result, merit=merit, evaluations=min(budget, result.evaluations))
 
 
 def compare(target: str) -> list[Row]:
     """All methods under the paper's own constraints, the same seeds."""
     task = problem(target, manufacturable=False)
-    own = task.variables(task.template)
+    printed_variables = task.variables(task.template)
     options: dict[str, Any] = {"searches": SEEDS, "seed": 1, "workers": WORKERS}
     pursued = run_searches(task, "random-pursuit", **options)
-    from_own = run_searches(task, "random-pursuit", start=own, **options | {"searches": 2})
+    from_own = run_searches(task, "random-pursuit", start=printed_variables, **options | {"searches": 2})
     median = float(np.median([result.merit for result in pursued]))
-    printed = float(task.evaluate(own[None]).power[0, 0])
+    printed = float(task.evaluate(printed_variables[None]).power[0, 0])
     rows = [
         Row(target, "printed design", printed, printed, 0.0, 1, None),
         summarise(target, "random pursuit from the printed design, to its end", from_own, None),
@@ -134,9 +134,9 @@ def unbounded() -> dict[str, str]:
         turn = task.evaluate(best.x[None])
         values = dict(zip((c.name for c in task.constraints), turn.values[0], strict=True))
         assert isinstance(task.drive, MomentDrive)
-        own = gain(turn.power[0], np.asarray(task.drive.baseline))
+        gained = gain(turn.power[0], np.asarray(task.drive.baseline))
         notes[f"D1's joint speeds, gear ratio up to {ratio:g}"] = (
-            f"{best.merit:.2f} W ({own.mean:+.2f} ± {own.deviation:.2f} W), knee {values['knee_min']:.1f} to "
+            f"{best.merit:.2f} W ({gained.mean:+.2f} ± {gained.deviation:.2f} W), knee {values['knee_min']:.1f} to "
             f"{values['knee_max']:.1f} deg at gear ratio {best.x[-1]:.2f}"
         )
     return notes

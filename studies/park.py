@@ -140,8 +140,8 @@ def main() -> None:
         out = Path(sys.argv[2] if sys.argv[2:] else temporary)
         for name, text in zip(("park.csv", "park.toml"), trial(machine, force), strict=True):
             write_text(out / name, text)
-        found = powers(machine, force, out / "park.toml")
-    table = Table("Mean power of one leg", {"way": "", "W": ".2f"}, [*found.items()])
+        computed = powers(machine, force, out / "park.toml")
+    table = Table("Mean power of one leg", {"way": "", "W": ".2f"}, [*computed.items()])
     write_text(PATH, f"{HEADING}\n{table.markdown()}")
     write_text(PATH.with_suffix(".json"), json_text({table.title: table.records()}))
 

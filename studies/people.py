@@ -81,7 +81,7 @@ def row(made_for: str, design: Design, printed: Design) -> Row:
     population = fit_population(design, MOMENTS, samples=SAMPLES, seed=SAMPLE_SEED)
     powers = np.concatenate([np.nan_to_num(rider.fitted.power) for rider in population.riders.values()])
     paper = fit_seat(design, Rider(), MOMENTS)
-    own = {key: value for key, value in paper.summary().items() if key.startswith("power")}
+    power_of_paper = {key: value for key, value in paper.summary().items() if key.startswith("power")}
     content = {
         "design": design.name,
         "made_for": made_for,
@@ -89,8 +89,8 @@ def row(made_for: str, design: Design, printed: Design) -> Row:
         "power_people_p10_W": float(np.percentile(powers, 10)),
         "can_ride": float(np.mean(powers > 0)),
         "can_ride_as_drawn": float(np.mean([*population.summary()["share_unmoved"].values()])),
-        "power_paper_rider_fitted_W": own["power_mean_W"],
-        "power_paper_rider_drawn_W": own["power_unmoved_W"],
+        "power_paper_rider_fitted_W": power_of_paper["power_mean_W"],
+        "power_paper_rider_drawn_W": power_of_paper["power_unmoved_W"],
         "paper_rider_seat": seat_text(paper.seat),
         **{f"{joint}_speed_max_deg_s": float(speed.max()) for joint, speed in fitted_speeds(design).items()},
         "map_error_W": population.map_error,
@@ -102,8 +102,8 @@ def rows(target: str) -> list[Row]:
     """The printed design, its successor for the paper's rider, and those for people."""
     printed = load_design(target)
     people = [row("the paper's rider (printed)", printed, printed)]
-    own = FOLDER / f"{target}-caution-0.toml"
-    people.append(row("the paper's rider", load_design(own), printed))
+    path = FOLDER / f"{target}-caution-0.toml"
+    people.append(row("the paper's rider", load_design(path), printed))
     for statistic, words in STATISTICS.items():
         task = problem(target, statistic)
         best = run_searches(task, "cma-es", searches=SEARCHES, budget=BUDGET, seed=2, workers=WORKERS)

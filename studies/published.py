@@ -41,7 +41,7 @@ of a seated rider (a model, PMC3324830).
 
 def tables(records: list[dict[str, Any]]) -> list[Table]:
     """One of measurements, one of models."""
-    made = []
+    by_kind = []
     for kind, title in TITLES.items():
         cells = [
             (
@@ -55,11 +55,11 @@ def tables(records: list[dict[str, Any]]) -> list[Table]:
             for record in records
             if record["kind"] == kind
         ]
-        made.append(Table(title, COLUMNS, cells))
+        by_kind.append(Table(title, COLUMNS, cells))
     summary = {"verdict": "", "measurements": "d"}
     parts = {"straightest knee, deg": "d", "half stride, m": ".2f", "height per length": ".2f", "power ratio": ".2f"}
     why = Table("Why elliptical stepping gives more", parts, [*stepping_rows()], STEPPING)
-    return [Table("Verdicts", summary, [*counts(records).items()]), *made, why]
+    return [Table("Verdicts", summary, [*counts(records).items()]), *by_kind, why]
 
 
 def stepping_rows() -> Iterator[tuple[Any, ...]]:
@@ -87,8 +87,8 @@ def details(record: dict[str, Any]) -> str:
 def figure(records: list[dict[str, Any]]) -> Figure:
     """Predictions in units of the measurement: its interval from -1 to 1, of a direction its side of 0."""
     shown = [record for record in records if record["kind"] == "measurement"]
-    made = Figure(figsize=(7.2, 0.3 * len(shown) + 1), layout="constrained")
-    axes: Any = made.subplots()
+    picture = Figure(figsize=(7.2, 0.3 * len(shown) + 1), layout="constrained")
+    axes: Any = picture.subplots()
     for place, record in enumerate(reversed(shown)):
         low, high = record["measured"]
         edge = low if high is None else high if low is None else (low + high) / 2
@@ -107,18 +107,18 @@ def figure(records: list[dict[str, Any]]) -> Figure:
     axes.set_yticklabels([record["name"] for record in reversed(shown)], fontsize=8)
     for name, colour in zip(VERDICTS, (SERIES[2], SERIES[1], SERIES[0]), strict=True):
         axes.plot([], [], color=colour, lw=3, label=name)
-    made.legend(loc="outside lower center", ncols=3)
-    return made
+    picture.legend(loc="outside lower center", ncols=3)
+    return picture
 
 
 def main() -> None:
     records = [row.record() for row in rows()]
-    made = tables(records)
+    page_tables = tables(records)
     picture = PATH.with_suffix(".png")
-    pages = [INTRODUCTION + "\n" + RULE, *(table.markdown() for table in made)]
+    pages = [INTRODUCTION + "\n" + RULE, *(table.markdown() for table in page_tables)]
     pages += ["![Predictions in half widths of the measurements](published.png)\n", "## Row by row\n"]
     write_text(PATH, "\n\n".join(page.rstrip() for page in [*pages, *map(details, records)]) + "\n")
-    content = {table.title: table.records() for table in made} | {"count": sum(counts(records).values())}
+    content = {table.title: table.records() for table in page_tables} | {"count": sum(counts(records).values())}
     write_text(
         PATH.with_suffix(".json"), json_text({"provenance": provenance([PUBLISHED_FILE]), "rows": records, **content})
     )

@@ -170,15 +170,17 @@ def random_table(outcomes: Sequence[Outcome]) -> Table:
     }
     rows = []
     for drive, transmission in product(DRIVES, TRANSMISSIONS):
-        own = [one for one in outcomes if (one.ride.summary()["drive"], one.ride.transmission) == (drive, transmission)]
-        done = [one for one in own if one.checks]
+        of_kind = [
+            one for one in outcomes if (one.ride.summary()["drive"], one.ride.transmission) == (drive, transmission)
+        ]
+        done = [one for one in of_kind if one.checks]
         words = [one.summary["verdict"] for one in done]
         rows.append(
             (
                 drive,
                 transmission,
-                len(own),
-                len(own) - len(done),
+                len(of_kind),
+                len(of_kind) - len(done),
                 sum(one.worst > 1 for one in done),
                 ", ".join(f"{words.count(word)} {word}" for word in sorted(set(words))),
                 max(one.worst for one in done),
@@ -215,7 +217,7 @@ def main() -> None:
     for part in [only] if only else PARTS:
         stem, title, rides, table = PARTS[part]
         outcomes = [outcome(ride) for ride in track([*rides()], f"{part} rides")]
-        pages = "\n".join(made.markdown() for made in (table(outcomes), checks_table(outcomes)))
+        pages = "\n".join(page.markdown() for page in (table(outcomes), checks_table(outcomes)))
         origin = f"Written by `python -m studies.ride_verification --part {part}`; see docs/theory.md."
         write_text(ROOT / "results" / f"{stem}.md", f"# {title}\n\n{origin}\n\n{pages}")
         worst = max(worst, *(one.worst for one in outcomes))

@@ -119,9 +119,9 @@ def draw(rows: list[dict[str, Any]]) -> None:
         axes.plot(*zip(*new, strict=True), color=COLOURS["comparison"], lw=1, zorder=1)
         for row in rows:
             point, rides = (row["ripple, %"], row["power, W"]), row["with a freewheel"] == "rides"
-            own = row["design"].startswith("d1-")
-            axes.plot(*point, "o" if own else "s", color="black", mfc="black" if rides else "white", zorder=2)
-            if not own:
+            is_d1 = row["design"].startswith("d1-")
+            axes.plot(*point, "o" if is_d1 else "s", color="black", mfc="black" if rides else "white", zorder=2)
+            if not is_d1:
                 axes.annotate(row["design"].upper(), point, xytext=(6, 4), textcoords="offset points")
         axes.set(xlabel="ripple of the crank speed, %", ylabel="mean power of one leg, W", xlim=(0, None))
         axes.set_title("Power against ripple", loc="left")

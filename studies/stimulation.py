@@ -54,10 +54,10 @@ def linkage_rows(name: str) -> Iterator[tuple[Any, ...]]:
 
 
 def main() -> None:
-    made = [*settings()]
+    solved = [*settings()]
     tables = (
-        Table("Best windows", BEST, [row for setting in made for row in best_rows(setting)]),
-        Table("What a leg gives and costs", TOTALS, [total_row(setting) for setting in made]),
+        Table("Best windows", BEST, [row for setting in solved for row in best_rows(setting)]),
+        Table("What a leg gives and costs", TOTALS, [total_row(setting) for setting in solved]),
         Table("Where the linkage lets moments drive", LINKAGE, [row for name in DESIGNS for row in linkage_rows(name)]),
     )
     write_text(PATH, "\n".join((HEADING, *(table._replace(note=NOTES[table.title]).markdown() for table in tables))))

@@ -31,17 +31,17 @@ def measured(group: str) -> Measured:
     """The numbers from which a rider group's moments were recovered, and its work shares, as measured numbers."""
     system = EvidenceSystem.of(of_group(load_evidence(), group))
     shares = [row for row in read_toml(TEXT_FILE, "statements").content["share"] if row["group"] == group]
-    known = [
+    work_shares = [
         (MUSCLE_GROUPS.index(WORKERS[row["muscles"]]), row["value"] / 100)
         for row in shares
         if row["muscles"] in WORKERS
     ]
     power = power_weights(kinematics.solve(PAPER_TRICYCLE.design, TURN_ANGLES), PAPER_TRICYCLE.cadence, PAPER_TRICYCLE)
     return Measured(
-        np.concatenate([system.weights, np.tile(power, (len(known), 1))]),
-        np.array([WHOLE] * len(system.values) + [number for number, _ in known]),
-        np.concatenate([system.values, [WORK_W * share for _, share in known]]),
-        np.diag(np.concatenate([system.errors**2, np.full(len(known), (WORK_W * SHARE_SD) ** 2)])),
+        np.concatenate([system.weights, np.tile(power, (len(work_shares), 1))]),
+        np.array([WHOLE] * len(system.values) + [number for number, _ in work_shares]),
+        np.concatenate([system.values, [WORK_W * share for _, share in work_shares]]),
+        np.diag(np.concatenate([system.errors**2, np.full(len(work_shares), (WORK_W * SHARE_SD) ** 2)])),
     )
 
 

@@ -63,9 +63,9 @@ def potential() -> tuple[FloatArray, list[float]]:
     features = terms(Flexion(np.radians(hip), np.radians(knee)), DEGREE)
     moments = published(hip, knee)
     by_knee, by_hip = (-part @ features for part in derivatives(np.eye(len(features)), DEGREE))
-    stacked, wanted = np.concatenate([by_knee, by_hip], axis=1)[1:], np.concatenate([*moments])
-    fitted = np.linalg.lstsq(stacked.T, wanted)[0].round(DECIMALS)
-    distance = np.abs(fitted @ stacked - wanted)
+    stacked, target = np.concatenate([by_knee, by_hip], axis=1)[1:], np.concatenate([*moments])
+    fitted = np.linalg.lstsq(stacked.T, target)[0].round(DECIMALS)
+    distance = np.abs(fitted @ stacked - target)
     return np.concatenate([[0.0], fitted]), [float(part.max()) for part in np.split(distance, 2)]
 
 
@@ -80,15 +80,15 @@ def main() -> None:
         Path(sys.argv[2]),
         Path(sys.argv[3]) if sys.argv[3:] else ANATOMY_FILE,
     )
-    table, known = load_table(lengths, "muscle lengths"), json.loads(parameters.read_text())
+    table, parameters_of = load_table(lengths, "muscle lengths"), json.loads(parameters.read_text())
     angles = [table.column(f"{joint}_flexion_deg") for joint in ("hip", "knee")]
-    columns = np.column_stack([table.column(f"{name}_m") for name in known])
+    columns = np.column_stack([table.column(f"{name}_m") for name in parameters_of])
     fitted, errors = polynomials(Flexion(*np.radians(angles)), columns)
     thigh, shank = next(adult for model, adult in ADULTS.items() if lengths.name.startswith(model))
     ranges = [f"[{angle.min():g}, {angle.max():g}]" for angle in angles]
     lines = [GAIT2392, "[adult]", f"degree = {DEGREE}", f"thigh_m = {thigh}", f"shank_m = {shank}"]
     lines += [f"hip_flexion_deg = {ranges[0]}", f"knee_flexion_deg = {ranges[1]}"]
-    for (name, row), coefficients, error in zip(known.items(), fitted, errors, strict=True):
+    for (name, row), coefficients, error in zip(parameters_of.items(), fitted, errors, strict=True):
         group, segments = next(kind for start, kind in MUSCLES.items() if name.startswith(start))
         lines += ["", f"[muscle.{name.removesuffix('_r')}]", f'group = "{group}"', f"segments = {json.dumps(segments)}"]
         lines += [f"{key} = {value!r}" for key, value in row.items() if key != "max_speed_fibre_lengths_per_s"]

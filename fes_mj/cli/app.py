@@ -11,7 +11,7 @@ from fes_mj.common.console import errors
 from fes_mj.common.errors import InputError, MissingPartError, UnstableError
 from fes_mj.common.text import printable
 
-EXIT_CODES = {
+ERROR_CODES = {
     CycloptsError: BAD_INPUT,
     InputError: BAD_INPUT,
     OSError: BAD_INPUT,
@@ -50,7 +50,7 @@ def run(arguments: Sequence[str] | None = None) -> int:
         sys.stdout.flush()
         return code if isinstance(code, int) else AGREES
     except Exception as error:
-        code = next((code for kind, code in EXIT_CODES.items() if isinstance(error, kind)), None)
+        code = next((code for kind, code in ERROR_CODES.items() if isinstance(error, kind)), None)
         if code is None or interruption_code(error) is not None:
             raise
         if isinstance(error, MemoryError):

@@ -104,13 +104,13 @@ async def _lines(run: Callable[[Path], Reply]) -> AsyncIterator[bytes]:
     """Progress of a run in a process of its own, and its answer; the process ends when nobody listens any more."""
     with TemporaryDirectory() as folder:
         work = asyncio.create_task(anyio.to_process.run_sync(run, Path(folder), cancellable=True))
-        going, said = anyio.to_process.current_default_process_limiter(), RUNNING
+        limiter, shown = anyio.to_process.current_default_process_limiter(), RUNNING
         try:
             while not (await asyncio.wait([work], timeout=TICK))[0]:
-                text = (progress(Path(folder)) or RUNNING) if work in going.statistics().borrowers else WAITING
-                if text != said:
+                text = (progress(Path(folder)) or RUNNING) if work in limiter.statistics().borrowers else WAITING
+                if text != shown:
                     yield encoded({"progress": text}) + b"\n"
-                said = text
+                shown = text
             yield encoded(work.result())
         except Exception as error:
             _LOG.error("a run failed", exc_info=error)

@@ -25,9 +25,9 @@ from fes_mj.statics.extrapolation import beyond
 from fes_mj.statics.joint_forces import JointForces, peaks
 from fes_mj.statics.turn import QuasiStatic, quasi_static, turn_points
 
-CURVE_POINTS = 360  # crank angles of a turn, from 0, at which curves are sent
+SENT_POINTS = 360  # crank angles of a turn, from 0, at which curves are sent
 DIGITS = 3  # after the point, of curves in W and deg
-_ANGLES = kinematics.uniform_turn(CURVE_POINTS)
+_ANGLES = kinematics.uniform_turn(SENT_POINTS)
 
 
 def turn(design: Design, moments: Mapping[str, JointMoments], legs: int = 1) -> dict[str, Any]:
@@ -38,7 +38,7 @@ def turn(design: Design, moments: Mapping[str, JointMoments], legs: int = 1) -> 
     failing = pose.failing(design)
     answer = pose.as_json(design, _ANGLES) | {"cadence_rpm": design.linkage.cadence / RPM, "failing": failing}
     try:
-        solved = {name: quasi_static(design, curves, points=CURVE_POINTS) for name, curves in moments.items()}
+        solved = {name: quasi_static(design, curves, points=SENT_POINTS) for name, curves in moments.items()}
     except InputError as error:
         return answer | {"why": failing["text"] if failing else str(error), "broken": broken(design, None)}
     motion = kinematics.solve(design, kinematics.uniform_turn(turn_points(design)))

@@ -102,8 +102,8 @@ def stepper(crank: float, flatness: float, knee_deg: float) -> Design:
         return float(np.abs(kinematics.positions(at(distance), TURN_ANGLES)["pedal"]).max() - reach)
 
     beyond_pedal = (1 - flatness) * coupler
-    found: float = brentq(too_far, beyond_pedal, beyond_pedal + 2 * reach)
-    return at(found)
+    root: float = brentq(too_far, beyond_pedal, beyond_pedal + 2 * reach)
+    return at(root)
 
 
 def stepping_per_cycling(riders: Riders, setup: CrankingSetup) -> FloatArray:

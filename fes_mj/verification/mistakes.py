@@ -145,9 +145,9 @@ def in_keyframe(field: str, joint: str, change: Callable[[float], float]) -> Ste
     return {"edit_model": edit}
 
 
-def coarser(steps: Pipeline, options: BenchOptions = PLAIN_BENCH, *, timestep: float | None = None, **own: Any) -> Any:
+def coarser(steps: Pipeline, options: BenchOptions = PLAIN_BENCH, *, timestep: float | None = None, **rest: Any) -> Any:
     count = steps_per_turn(steps.design, steps.cadence, steps.timestep if timestep is None else timestep)
-    return Pipeline.run(steps, options, timestep=16 * 2 * math.pi / steps.cadence / count, **own)
+    return Pipeline.run(steps, options, timestep=16 * 2 * math.pi / steps.cadence / count, **rest)
 
 
 def with_whole_couples(steps: Pipeline, motion: Motion, *arguments: Any, **options: Any) -> Any:
@@ -222,9 +222,9 @@ MISTAKEN_STEPS: dict[str, Steps] = {
     "reversed_start": in_keyframe("qvel", "hip", lambda speed: -speed),
     "six_digits": in_model("compiler", savecompiled=True, savecanonical=True),
     "late_torque": in_result(Pipeline.run, lambda run: replace(run, crank_moment=np.roll(run.crank_moment, 1))),
-    "turn_and_a_half": {"run": lambda *args, **own: replace(Pipeline.run(*args, **own | {"turns": 1.5}), turns=1)},
+    "turn_and_a_half": {"run": lambda *args, **rest: replace(Pipeline.run(*args, **rest | {"turns": 1.5}), turns=1)},
     "no_pre_roll": {
-        "run": lambda steps, options=PLAIN_BENCH, **own: Pipeline.run(steps, replace(options, pre_roll=1), **own)
+        "run": lambda steps, options=PLAIN_BENCH, **rest: Pipeline.run(steps, replace(options, pre_roll=1), **rest)
     },
     "coarse_step": {"run": coarser},
     "no_rotary_inertia": in_result(

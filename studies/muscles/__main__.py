@@ -94,10 +94,12 @@ def tables(second: Path | None) -> list[Table]:
 
 
 def main() -> None:
-    made = tables(Path(sys.argv[1]) if sys.argv[1:] else None)
-    write_text(PATH, "\n".join([HEADING, *(table._replace(note=NOTES[table.title]).markdown() for table in made)]))
-    write_text(PATH.with_suffix(".json"), json_text({table.title: table.records() for table in made}))
-    figures.write(PATH.parent, {table.title: table.records() for table in made})
+    page_tables = tables(Path(sys.argv[1]) if sys.argv[1:] else None)
+    write_text(
+        PATH, "\n".join([HEADING, *(table._replace(note=NOTES[table.title]).markdown() for table in page_tables)])
+    )
+    write_text(PATH.with_suffix(".json"), json_text({table.title: table.records() for table in page_tables}))
+    figures.write(PATH.parent, {table.title: table.records() for table in page_tables})
 
 
 HEADING = """# Muscles: what is left of the gain

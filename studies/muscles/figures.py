@@ -47,16 +47,16 @@ def unity(axes: Axes, label: str) -> None:
     axes.set(xlabel=label)
 
 
-def null_test(known: Gains) -> Figure:
+def null_test(gains: Gains) -> Figure:
     """What the paper's rule makes of riders who are known, beside what is true of them."""
     figure = Figure(figsize=(7.2, 3.4), layout="constrained")
     axes, cloud = figure.subplots(1, 2, width_ratios=(3, 2))
     ends, paper = (0.05, 0.5, 0.95), paper_gains()
     for place, name in enumerate(SIX_BARS):
         labels = ("true", "by angle, the paper's rule", "printed in the paper") if place == 0 else (None,) * 3
-        interval(axes, place + 0.16, np.quantile(known.true[place], ends), color=SERIES[0], label=labels[0])
-        said = np.quantile(known.by_angle[place], ends)
-        interval(axes, place - 0.16, said, color=SERIES[1], label=labels[1])
+        interval(axes, place + 0.16, np.quantile(gains.true[place], ends), color=SERIES[0], label=labels[0])
+        predicted = np.quantile(gains.by_angle[place], ends)
+        interval(axes, place - 0.16, predicted, color=SERIES[1], label=labels[1])
         axes.plot(paper[name], place, "D", color=INK, ms=5, label=labels[2])
     axes.set_yticks(range(len(NAMES)), NAMES)
     axes.invert_yaxis()
@@ -64,7 +64,7 @@ def null_test(known: Gains) -> Figure:
     axes.set_title("400 riders whose muscles are known, 5 to 95 %", loc="left", size=9)
     axes.legend(loc="lower left", bbox_to_anchor=(0, 1.08), ncols=3)
     number = SIX_BARS.index("d1")
-    cloud.plot(known.true[number], known.by_angle[number], ".", color=SERIES[1], ms=4, alpha=0.6)
+    cloud.plot(gains.true[number], gains.by_angle[number], ".", color=SERIES[1], ms=4, alpha=0.6)
     cloud.plot([0, 2], [0, 2], color=FAINT, lw=0.8, ls=(0, (4, 2)))
     cloud.text(1.0, 0.9, "by angle = true", color=FAINT, rotation=38, size=8, ha="left", va="bottom")
     cloud.set(xlim=(0, 1.3), ylim=(0.8, 2.1), xlabel="true gain of D1", ylabel="gain of D1 by angle")

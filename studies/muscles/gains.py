@@ -50,9 +50,9 @@ def paper_gains() -> dict[str, float]:
 def null_rows() -> Iterator[tuple[Any, ...]]:
     """True and by-angle gain of riders who are known."""
     gains, paper = known_gains(), paper_gains()
-    for name, true, said in zip(SIX_BARS, gains.true, gains.by_angle, strict=True):
-        correlation = float(np.corrcoef(true, said)[0, 1])
-        yield name.upper(), *quantiles(true), *quantiles(said), paper[name], correlation
+    for name, true, predicted in zip(SIX_BARS, gains.true, gains.by_angle, strict=True):
+        correlation = float(np.corrcoef(true, predicted)[0, 1])
+        yield name.upper(), *quantiles(true), *quantiles(predicted), paper[name], correlation
 
 
 def quantiles(values: FloatArray) -> list[float]:
@@ -118,5 +118,5 @@ def power_rows() -> Iterator[tuple[Any, ...]]:
             dead = (content["power_two_legs_min_W"], 100 * content["negative_share"])
             losses = (100 * content["early_loss_share"], 100 * content["late_loss_share"])
             low, high = MEASURED_W
-            said = (probability((2 * power >= low) & (2 * power <= high)), probability(2 * power > high))
-            yield group, name.upper(), *quantiles(2 * power), *said, work, *dead, *losses, ends
+            probabilities = (probability((2 * power >= low) & (2 * power <= high)), probability(2 * power > high))
+            yield group, name.upper(), *quantiles(2 * power), *probabilities, work, *dead, *losses, ends

@@ -58,9 +58,9 @@ def posterior_rows() -> Iterator[tuple[Any, ...]]:
         cells: list[Any] = [first.name, first.unit, *first.prior]
         for riders, rows, gains in groups:
             row = rows[number]
-            said = f"{row.narrowed_to:.2f}" if row.identified else "not identified"
+            narrowed = f"{row.narrowed_to:.2f}" if row.identified else "not identified"
             variance = 100 * float(np.corrcoef(riders.values[row.name], gains)[0, 1] ** 2)
-            cells += [*row.posterior, said, variance]
+            cells += [*row.posterior, narrowed, variance]
         yield tuple(cells)
 
 
@@ -97,13 +97,13 @@ def reversal_rows() -> Iterator[tuple[Any, ...]]:
     for group in RIDER_GROUPS:
         riders = load_riders(group)
         trt, d1 = (power(riders, name) for name in ("trt", "d1"))
-        known = {name: riders.values[name] for name in ("rise_s", "max_speed")}
+        quantities = {name: riders.values[name] for name in ("rise_s", "max_speed")}
         fast = power(riders, "trt", 96) / power(riders, "trt", 60)
         cases: dict[str, Any] = {
             "all riders": np.ones(len(riders), bool),
-            "who rise within 0.05 s": known["rise_s"] < 0.05,
-            "who rise within 0.05 s and shorten by more than 9 a second": (known["rise_s"] < 0.05)
-            & (known["max_speed"] > 9),
+            "who rise within 0.05 s": quantities["rise_s"] < 0.05,
+            "who rise within 0.05 s and shorten by more than 9 a second": (quantities["rise_s"] < 0.05)
+            & (quantities["max_speed"] > 9),
             "whose P96/P60 is above 0.8": fast > 0.8,
             "whose P96/P60 is above 0.9": fast > 0.9,
         }

@@ -12,7 +12,7 @@ import fes_mj
 from fes_mj.explore.answers import Answers
 from fes_mj.explore.dimensions import content_of
 from fes_mj.explore.server import encoded
-from fes_mj.explore.turn import CURVE_POINTS, DIGITS, turn
+from fes_mj.explore.turn import DIGITS, SENT_POINTS, turn
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.variables import replaced
 from fes_mj.moments.fourier import fourier
@@ -31,7 +31,7 @@ def text_of(numbers: list[dict[str, str]], name: str) -> str:
 def test_power_is_that_of_statics(design: Design, group: str) -> None:
     shown = turn(design, GROUPS)["moments"][group]
     static = quasi_static(design, GROUPS[group])
-    np.testing.assert_allclose(shown["static"], static.power[:: len(static.power) // CURVE_POINTS], atol=ROUNDED)
+    np.testing.assert_allclose(shown["static"], static.power[:: len(static.power) // SENT_POINTS], atol=ROUNDED)
     assert text_of(shown["numbers"], "power") == f"{static.power_mean:.2f}"
     assert shown["power_mean_W"] == pytest.approx(static.power_mean, rel=1e-12)
 
@@ -62,7 +62,7 @@ def test_the_band_is_that_of_many_curves() -> None:
     for row in generator.multivariate_normal(mean, moments.covariance, count, method="eigh"):
         knee, hip = (fourier(angle) @ part for part in np.split(row, 2))
         drawn = replace(moments, crank_angle=angle, knee=knee, hip=hip)
-        powers.append(quasi_static(design, drawn, points=CURVE_POINTS).power)
+        powers.append(quasi_static(design, drawn, points=SENT_POINTS).power)
     scatter = np.std(powers, axis=0)
     sd = turn(design, GROUPS)["moments"]["p1p2"]["sd"]
     # a standard deviation from so many samples is itself unsure by 1 / sqrt(2 n) of it; five times that
@@ -72,9 +72,9 @@ def test_the_band_is_that_of_many_curves() -> None:
 def test_two_legs_are_half_a_turn_apart() -> None:
     one, two = (turn(fes_mj.load_design("d1"), GROUPS, legs)["moments"]["p1p2"] for legs in (1, 2))
     for curve in ("static", "masses"):
-        total = one[curve] + np.roll(one[curve], CURVE_POINTS // 2)
+        total = one[curve] + np.roll(one[curve], SENT_POINTS // 2)
         np.testing.assert_allclose(two[curve], total, atol=3 * ROUNDED)
-    assert np.all(two["sd"] <= one["sd"] + np.roll(one["sd"], CURVE_POINTS // 2) + 2 * ROUNDED)
+    assert np.all(two["sd"] <= one["sd"] + np.roll(one["sd"], SENT_POINTS // 2) + 2 * ROUNDED)
     assert one["numbers"] == two["numbers"]  # of one leg
 
 

@@ -36,7 +36,7 @@ def main() -> int:
         print(f"unknown reader {unknown[0]!r}; it must be one of {', '.join(READERS)}", file=sys.stderr)
         return 2
     chosen = arguments or [*READERS]
-    designs, found = [load_design(name) for name in DESIGNS], list[Row]()
+    designs, judged = [load_design(name) for name in DESIGNS], list[Row]()
     console = Console(stderr=True)
     with tempfile.TemporaryDirectory() as folder, Progress(console=console, transient=True) as progress:
         tasks = jobs(designs, Path(folder))
@@ -45,13 +45,13 @@ def main() -> int:
             if interpreter(name) is None:
                 console.print(f"{name}: not installed, left out; `make readers` installs it where it can be had")
             else:
-                found += rows(name, tasks, references)
-    print(table(found))
-    if {row.reader for row in found} == {*READERS}:
-        record = {"provenance": provenance(), "rows": [asdict(row) | {"ok": row.ok} for row in found]}
+                judged += rows(name, tasks, references)
+    print(table(judged))
+    if {row.reader for row in judged} == {*READERS}:
+        record = {"provenance": provenance(), "rows": [asdict(row) | {"ok": row.ok} for row in judged]}
         write_text(RESULTS / "readers.json", json_text(record))
-        write_text(RESULTS / "readers.md", HEADING + table(found))
-    return 0 if all(row.ok for row in found) else 1
+        write_text(RESULTS / "readers.md", HEADING + table(judged))
+    return 0 if all(row.ok for row in judged) else 1
 
 
 if __name__ == "__main__":

@@ -108,10 +108,12 @@ def _motion(reader: Reader, motion: str, task: Job, answer: Answer, expected: An
         model = mujoco.MjModel.from_xml_path(task["model"])
         start = [*zip(*task["joints"].values(), strict=True)]
         energies, gap = _measured(model, [start, *answer["states"]])
-        known, _ = _measured(model, [start, *expected["states"]])
+        expected_energies, _ = _measured(model, [start, *expected["states"]])
         # the road takes energy; otherwise there is as much as at the start
-        due = known.sum(axis=1) if motion == "ride" else known[0].sum()
-        drift = float(np.abs(energies.sum(axis=1) - due).max() / (known[0].sum() - known[:, 0].min()))
+        due = expected_energies.sum(axis=1) if motion == "ride" else expected_energies[0].sum()
+        drift = float(
+            np.abs(energies.sum(axis=1) - due).max() / (expected_energies[0].sum() - expected_energies[:, 0].min())
+        )
     return Motion(answer.get("free", -1), error, reader.acceleration(expected), drift, gap, bool(task["samples"]))
 
 

@@ -121,8 +121,8 @@ def accelerations(model: mujoco.MjModel, data: mujoco.MjData, softness: float | 
         for loop in (slice(row, row + 3) for row in range(0, int(data.ne) // 3 * 3, 3)):
             rigidity[loop] = 3 / (softness * np.linalg.norm(felt[loop, loop]))
     weighted = jacobian[loops].T * rigidity
-    given = mass @ data.qacc_smooth + jacobian[data.ne :].T @ data.efc_force[data.ne :]  # the road's friction slips
-    without = np.linalg.solve(mass + weighted @ jacobian[loops], given + weighted @ reference)
+    forces = mass @ data.qacc_smooth + jacobian[data.ne :].T @ data.efc_force[data.ne :]  # the road's friction slips
+    without = np.linalg.solve(mass + weighted @ jacobian[loops], forces + weighted @ reference)
     return np.array([data.qacc, without])
 
 
