@@ -25,7 +25,7 @@ from fes_mj.muscles.timing import Windows
 class LegMuscles(NamedTuple):
     """The muscles of one rider's leg; arrays by muscle, shape (muscles,).
 
-    group: number in GROUPS. lengths: m, coefficients by powers of hip, then knee flexion from `straight` where
+    group: number in MUSCLE_GROUPS. lengths: m, coefficients by powers of hip, then knee flexion from `straight` where
     knee_inside, elsewhere of knee, then hip, highest first, shape (muscles, powers, powers). straight: knee and hip
     angle from which flexion counts there, rad. force: N, of the rider's muscles, times how much longer these are than
     the lengths say. optimal, slack: m. thickness: m, of the fibres. max_speed: m/s. rise, fall, delay: s.
