@@ -118,6 +118,8 @@ class Pen:
     def dxf(self) -> str:
         """The drawing as a file; without a date, so that the same drawing gives the same bytes."""
         stream = io.StringIO()
+        for kind in sorted(self.document.entitydb.dxf_types_in_use()):  # ezdxf declares them in the order of a set
+            self.document.classes.add_class(kind)
         with _without_date():
             self.document.write(stream)
         return stream.getvalue()

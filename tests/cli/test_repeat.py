@@ -33,7 +33,7 @@ sys.exit(run(sys.argv[1:]))
 )
 def test_twice_the_same_bytes(arguments: list[str], tmp_path: Path) -> None:
     written = []
-    for seed in ("1", "2"):
+    for seed in ("1", "4"):  # by which the sets of ezdxf, too, are in another order
         (folder := tmp_path / seed).mkdir()
         command = [sys.executable, "-c", SCRIPT, *arguments]
         done = subprocess.run(command, cwd=folder, env=os.environ | {"PYTHONHASHSEED": seed}, capture_output=True)
