@@ -225,7 +225,7 @@ def test_no_output_replaces_an_input_or_a_file_of_somebody_else(
     Path("theirs.xml").write_text("<mujoco/>")
     Path("m-front.csv").write_text("crank_angle_deg,knee_Nm,hip_Nm\n0,5,1\n60,25,2\n")
     before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
-    assert run(["optimize", "cdt", *arguments, *QUICK]) == 2
+    assert run(["optimize", "cdt", *arguments, "--budget", "2000", *PAPER]) == 2
     assert said in capsys.readouterr().err
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
 
