@@ -39,13 +39,15 @@ class VerificationCase(Case):
     """A case that is verified.
 
     expected: printed values, of the paper's designs only. file: that the design was read from. refined: in a full run.
-    ride_steps: what takes the place of steps of the rides' cases, by name: a ride with a fault.
+    ride_steps: what takes the place of steps of the rides' cases, by name: a ride with a fault. ride_timesteps: of each
+    of the rides in MuJoCo, s, by default chosen by it.
     """
 
     expected: Expected | None = None
     file: Path | None = None
     refined: bool = False
     ride_steps: Mapping[str, Any] = field(default_factory=dict, kw_only=True)
+    ride_timesteps: tuple[float | None, ...] = (None, None, None)
 
     @cached_property
     def two_legs(self) -> Case:
@@ -69,7 +71,7 @@ class VerificationCase(Case):
         flat = [replace(ride, transmission=kind) for kind in TRANSMISSIONS]
         steep = replace(ride, transmission="fixed", road=Road(slope=STEEP), duration=STEEP_DURATION)
         kind = type("RideCase", (RideCase,), dict(self.ride_steps))
-        return [kind(one) for one in (*flat, steep)]
+        return [kind(one, step) for one, step in zip((*flat, steep), self.ride_timesteps, strict=True)]
 
     audit = cached_property(energy.audit)  # where the work of the joint moments went
     refinement = cached_property(refine)  # the run at other time steps and loop stiffnesses

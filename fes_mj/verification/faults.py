@@ -64,10 +64,16 @@ class Fault(NamedTuple):
         return (*QUICK_CHECKS, refinement_checks) if refined else QUICK_CHECKS
 
     def put_into(self, case: VerificationCase) -> VerificationCase:
-        """The case with the mistake in it; nothing measured of the original is taken over."""
+        """The case with the mistake in it; nothing measured of the original is taken over but its rides' time steps.
+
+        A ride that fails is made finer, for which no step is small enough here.
+        """
         design = self.edit(case.design) if self.edit else case.design
         pipeline = type("FaultyPipeline", (case.pipeline,), dict(self.steps))
-        return replace(case, design=design, pipeline=pipeline, ride_steps=self.ride_steps)
+        faulty = replace(case, design=design, pipeline=pipeline, ride_steps=self.ride_steps)
+        if not self.ride_steps:
+            return faulty
+        return replace(faulty, ride_timesteps=tuple(ride.simulation.timestep for ride in case.rides))
 
 
 def in_model(kind: str, name: str = "", **changes: Any) -> Steps:
