@@ -7,11 +7,12 @@ import pytest
 
 from fes_mj import load_design, load_moments, quasi_static
 from fes_mj.linkage.assembly import grashof_margin, joint_ranges
+from fes_mj.linkage.design_file import SIX_BARS
 from fes_mj.moments.joint_moments import RIDER_GROUPS
 from fes_mj.moments.reference_tricycle import PAPER_TRICYCLE
 from fes_mj.paper.evidence import functional, load_evidence
 from fes_mj.paper.identification import identify
-from fes_mj.paper.printed import SIX_BARS, table1
+from fes_mj.paper.printed import table1
 from fes_mj.paper.reconstruction import choose_hyperparameters, condition
 
 
