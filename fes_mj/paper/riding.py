@@ -81,7 +81,7 @@ def ride_all(silent: bool) -> list[Riding]:
     return [_riding(load_design(name), group, muscles[group], kind) for group, name, kind in cases]
 
 
-def drawn_rides(ride: Ride, muscles: Muscles, count: int = RIDE_DRAWS) -> list[Ride]:
+def drawn_rides(ride: Ride, muscles: Muscles, count: int) -> list[Ride]:
     """A ride with the rider, the dimensions and the legs of each draw; without those that cannot turn or be driven."""
     assert isinstance(ride.drive, StimulatedRider)
     design, group = ride.design, muscles.riders.name
@@ -102,7 +102,7 @@ def drawn_rides(ride: Ride, muscles: Muscles, count: int = RIDE_DRAWS) -> list[R
 
 def _riding(design: Design, group: str, muscles: Muscles, transmission: str) -> Riding:
     best = Ride(design, stimulated_rider(muscles, design), transmission=transmission)
-    level = [best, *drawn_rides(best, muscles)]
+    level = [best, *drawn_rides(best, muscles, RIDE_DRAWS)]
     balanced = balancing_slope(best)
     uphill = [replace(ride, road=Road(slope=balanced)) for ride in level]
     brief = [replace(ride, duration=SHORT) for ride in level[: 1 + START_DRAWS]]

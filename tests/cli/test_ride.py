@@ -1,11 +1,13 @@
 """`fes_mj ride`: the promised JSON, tables, files and exit codes."""
 
 import json
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+import fes_mj
 from fes_mj.common.console import output
 from fes_mj.crosscheck import ride_case
 from tests.cli.conftest import answer, names, result
@@ -96,7 +98,7 @@ def test_a_ride_by_moments_says_first_that_they_do_not_fall_with_speed(capsys: p
 def test_starts(capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("numba")
     pytest.importorskip("matplotlib")
-    monkeypatch.setattr("fes_mj.riding.starts.START_ANGLES", 8)
+    monkeypatch.setattr(fes_mj, "starts", partial(fes_mj.starts, angles=8))
     code, content = answer(capsys, "ride", "r1", "--starts", "--duration", "5", "--out", str(tmp_path))
     assert code == 0
     assert 0 < content["start_share"] < 1
