@@ -19,6 +19,7 @@ from fes_mj.optimization.search import SearchResult
 PAPER = ["--limits", "paper"]  # without forces and clearances, which take long
 FEW = ["--budget", "2000", "--seed", "2", *PAPER]
 QUICK = [*FEW, "--searches", "1"]
+LIKE_D2 = ["--group", "p1p3", "--speeds-of", "d2", "--start", "d2", "--caution", "1", "--knee-speed-limit", "170"]
 # from a feasible start: where the file and not the search is looked at
 FROM_D1 = ["--start", "d1", "--speeds-of", "d1", "--budget", "1000", "--seed", "2", *PAPER]
 
@@ -174,19 +175,7 @@ def found_with(path: Path) -> list[str]:
     [
         QUICK,
         pytest.param(
-            [
-                "--speeds-of",
-                "d2",
-                "--start",
-                "d2",
-                "--caution",
-                "1",
-                "--knee-speed-limit",
-                "170",
-                "--group",
-                "p1p3",
-                *QUICK,
-            ],
+            [*LIKE_D2, *QUICK],
             marks=pytest.mark.long,
         ),
         ["--problem", "it's a *problem*\x07.toml", "--moments", "-m.csv", *QUICK],
