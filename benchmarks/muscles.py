@@ -41,7 +41,7 @@ def simulate() -> dict[str, float]:
         measured = core.rates({name: (1, partial(call, name)) for name in drives}, ROUNDS)
         return float(np.median(measured["moments"] / measured["muscles"]))
 
-    command = [start.COMMAND, "simulate", "d1", "--quiet", "--drive"]
+    command = [start.COMMAND, "simulate", "d1", "--drive"]
     return {
         "fes_mj simulate d1": ratio(lambda name: start.seconds([*command, name])),
         "its checks": ratio(lambda name: list(verify(VerificationCase(design, drives[name]())))),
