@@ -3,6 +3,8 @@
 import json
 import re
 import runpy
+import shutil
+import subprocess
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +28,21 @@ def test_a_result_names_its_command_and_the_commit_it_was_measured_at(name: str)
     provenance: dict[str, Any] = RESULTS[name]["provenance"]
     assert provenance["command"] == f"python -m benchmarks.{name}"
     assert re.fullmatch("[0-9a-f]{12}", provenance["commit"])
+
+
+def git(*arguments: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(["git", *arguments], cwd=ROOT, capture_output=True, text=True, check=False)
+
+
+@pytest.mark.process
+@pytest.mark.skipif(shutil.which("git") is None, reason="git is not here")
+@pytest.mark.parametrize("name", RESULTS)
+def test_a_result_was_measured_at_a_commit_of_this_history(name: str) -> None:
+    root, _, shallow = git("rev-parse", "--show-toplevel", "--is-shallow-repository").stdout.strip().rpartition("\n")
+    if root != str(ROOT) or shallow != "false":
+        pytest.skip("not a checkout with its whole history")
+    commit = RESULTS[name]["provenance"]["commit"]
+    assert git("merge-base", "--is-ancestor", commit, "HEAD").returncode == 0, f"{commit} is no ancestor of HEAD"
 
 
 @pytest.mark.parametrize("name", RESULTS)
