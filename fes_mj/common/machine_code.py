@@ -2,7 +2,7 @@
 
 import hashlib
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
@@ -26,47 +26,37 @@ def inlined_machine_code(function: Function) -> Function:
     return _njit(function, forceinline=True)
 
 
-def kept_machine_code(function: Function) -> Function:
-    """The same, kept on disk between processes: of a function that Python calls.
+def kept_machine_code(*structures: type) -> Callable[[Function], Function]:
+    """The same, kept on disk between processes: of a function that Python calls. structures: named tuples it is given.
 
-    Its machine code holds that of every function it calls, but numba looks for changes in its own file alone. So it
-    takes a last argument with the default `sources(...)`, which is a part of the key under which numba keeps it.
+    Its machine code holds that of every function it calls, but numba looks for changes in its own file alone, and reads
+    what it kept before it looks. So a digest of all these files is a part of the name under which it is kept.
     """
-    try:
-        kept = _njit(function, cache=True)
-    except RuntimeError:  # nowhere to write to: made anew by every process
-        return _njit(function)
-    if COMPILED:
-        _forget_what_is_gone(cast("Any", kept)._cache)
-    return kept
 
-
-def _forget_what_is_gone(cache: Any) -> None:
-    """What another version kept names its named tuples; where one of them is gone, nothing kept can be read."""
-    load = cache.load_overload
-
-    def load_or_forget(*signature: Any) -> Any:
+    def keep(function: Function) -> Function:
+        if not COMPILED:
+            return function
+        function.__qualname__ += f"_{_digest(function, structures)}"
         try:
-            return load(*signature)
-        except (AttributeError, ImportError):
-            return cache.flush()
+            return _njit(function, cache=True)
+        except RuntimeError:  # nowhere to write to: made anew by every process
+            return _njit(function)
 
-    cache.load_overload = load_or_forget
+    return keep
 
 
-def sources(*structures: type) -> int:
-    """Digest of the files in which the calling module's machine code and all that it calls stands, and the named tuples
-    that it is given; the same whatever else was imported before.
+def _digest(function: Callable[..., Any], structures: Iterable[type]) -> str:
+    """Of the files in which the machine code that a function calls, and the named tuples that it is given, stand; the
+    same whatever else was imported before.
     """
-    files, scopes = set(), [sys._getframe(1).f_globals]
+    files, scopes = set(), [function.__globals__]
     while scopes:
-        for function in [value.py_func for value in scopes.pop().values() if hasattr(value, "py_func")]:
-            if function.__code__.co_filename not in files:
-                files.add(function.__code__.co_filename)
-                scopes.append(function.__globals__)
+        for called in [value.py_func for value in scopes.pop().values() if hasattr(value, "py_func")]:
+            if called.__code__.co_filename not in files:
+                files.add(called.__code__.co_filename)
+                scopes.append(called.__globals__)
     files |= {str(sys.modules[structure.__module__].__file__) for structure in structures}
-    digest = hashlib.sha256(b"".join(Path(file).read_bytes() for file in sorted(files)))
-    return int.from_bytes(digest.digest()[:7])
+    return hashlib.sha256(b"".join(Path(file).read_bytes() for file in sorted(files))).hexdigest()[:16]
 
 
 def _njit(function: Function, **options: bool) -> Function:

@@ -3,7 +3,7 @@
 import math
 from typing import Any, NamedTuple
 
-from fes_mj.common.machine_code import inlined_machine_code, kept_machine_code, machine_code, sources
+from fes_mj.common.machine_code import inlined_machine_code, kept_machine_code, machine_code
 from fes_mj.linkage.inertia import CrankInertia
 from fes_mj.riding.equation import Mode, State, System, mode_margins, mode_of, rates_of, state_after
 from fes_mj.riding.leg_table import LegTable
@@ -135,15 +135,9 @@ def longest_step(system: System, state: State, rates: State, mode: Mode) -> floa
     return min(system.longest, 2 * reach / max(fastest, STANDING))
 
 
-@kept_machine_code
+@kept_machine_code(CrankInertia, LegTable, MuscleTable, Load)
 def fill_samples(
-    system: System,
-    state: State,
-    mode: Mode,
-    clock: float,
-    until: float,
-    rows: Any,
-    version: int = sources(CrankInertia, LegTable, MuscleTable, Load),
+    system: System, state: State, mode: Mode, clock: float, until: float, rows: Any
 ) -> tuple[int, State, Mode, float]:
     """Fill rows with SAMPLE at the start of each step, and at last at the end of the ride.
 

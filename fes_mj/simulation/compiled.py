@@ -14,7 +14,7 @@ import numpy as np
 
 from fes_mj.common.arrays import FloatArray, IntArray
 from fes_mj.common.errors import require_extra
-from fes_mj.common.machine_code import inlined_machine_code, kept_machine_code, machine_code, sources
+from fes_mj.common.machine_code import inlined_machine_code, kept_machine_code, machine_code
 from fes_mj.linkage.joints import JOINTS
 from fes_mj.linkage.legs import Leg
 from fes_mj.linkage.torque_source import TorqueSource
@@ -186,7 +186,7 @@ def compiled_road_loop(make_control: Callable[[mujoco.MjModel], RoadControl]) ->
     return compiled_controlled_loop(_road_advance, lambda model: (make_control(model), memory_of(model)), forces=False)
 
 
-@kept_machine_code
+@kept_machine_code()
 def _road_advance(
     half: float,
     pointers: tuple[int, int],
@@ -194,7 +194,6 @@ def _road_advance(
     fields: Fields,
     sensor_rows: Any,
     force_rows: Any,
-    version: int = sources(),
 ) -> None:
     control, memory = arguments
     for row in range(len(sensor_rows) - 1):

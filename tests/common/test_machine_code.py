@@ -31,10 +31,10 @@ def factor(value):
 """
 OUTER = """
 from inner import factor
-from fes_mj.common.machine_code import kept_machine_code, sources
+from fes_mj.common.machine_code import kept_machine_code
 
-@kept_machine_code
-def outer(value, version=sources()):
+@kept_machine_code()
+def outer(value):
     return factor(value)
 
 print(outer(1.0), sum(outer.stats.cache_hits.values()))
@@ -93,7 +93,7 @@ def test_where_nothing_can_be_kept_it_is_made_anew() -> None:
     scope: dict[str, object] = {}
     exec(compile("def twice(value):\n    return 2 * value\n", "<nowhere>", "exec"), scope)
     twice = cast("Callable[[float], float]", scope["twice"])
-    assert kept_machine_code(twice)(2.5) == 5.0
+    assert kept_machine_code()(twice)(2.5) == 5.0
 
 
 NAMED = """
@@ -106,7 +106,7 @@ OF_A_NAMED_TUPLE = """
 from named import Table
 from fes_mj.common.machine_code import kept_machine_code
 
-@kept_machine_code
+@kept_machine_code(Table)
 def doubled(table):
     return 2.0 * table.value
 
