@@ -57,9 +57,9 @@ def require_one_of(name: str, value: object, allowed: Collection[str]) -> None:
 def require_within(name: str, value: float, low: float, high: float = math.inf, unit: str = "") -> None:
     """Raise InputError for a number that is not finite or not from low to high, ends included, all in the unit."""
     if not (low <= value <= high and math.isfinite(value)):
-        allowed = (
-            f"from {low:g} to {high:g}" if high < math.inf else f"at least {low:g}" if low > -math.inf else "finite"
-        )
+        allowed = f"from {low:g} to {high:g}"
+        if high == math.inf:
+            allowed = f"at least {low:g}" if low > -math.inf else "finite"
         raise InputError(f"{name} is {value:g} {unit}".rstrip() + f"; it must be {allowed} {unit}".rstrip())
 
 

@@ -16,9 +16,8 @@ if sys.platform != "win32":
     import fcntl
 
 TEMPORARY = ".fes_mj-"  # how the names of temporary files begin
-FOLDER_RECORD = (
-    ".fes_mj.sha256"  # in a folder: SHA-256, a line each, of what fes_mj wrote there without having been named
-)
+# In a folder: SHA-256, a line each, of what fes_mj wrote there without having been named.
+FOLDER_RECORD = ".fes_mj.sha256"
 PICTURES = (".png", ".svg")
 PAGES = (".svg", ".pdf", ".png")
 

@@ -45,8 +45,8 @@ def local_errors(design: Design, cadence: float, step: float, angles: FloatArray
     along the two chains), takes speeds and accelerations as differences of such poses and balances the forces there.
     """
     poses = _pose(design, angles + step * np.arange(-2, 2)[:, None], step)  # two before, one before, now, one after
-    motion, power = kinematics.solve(design, angles), 0.0
     links, rates = ({link: values[_NOW] for link, values in part.items()} for part in (poses.links, poses.rates))
+    power = np.zeros(angles.shape)
     # angles by which links turn between neighbours
     turned = {link: np.angle(tips[1:] * np.conj(tips[:-1])) for link, tips in poses.links.items()}
     for body, inertia in inertias(design).items():
@@ -57,18 +57,20 @@ def local_errors(design: Design, cadence: float, step: float, angles: FloatArray
         arms = _arms(body, links, inertia.centre / design.link_lengths[body])
         acceleration = cadence**2 * sum(arm * (1j * second[link] - speed[link] ** 2) for link, arm in arms)
         velocity = sum(1j * arm * rates[link] for link, arm in arms)
-        centre = motion.body_point(body, inertia.centre)
+        _, centre_first, centre_second = (part[_NOW] for part in poses.motion.body_point(body, inertia.centre))
+        turning_first, turning_second = (part[_NOW] for part in poses.motion.rotation[body])
         force = np.conj(acceleration + 1j * GRAVITY) * velocity
-        exact = np.conj(cadence**2 * centre.second + 1j * GRAVITY) * centre.first
-        couple = cadence**2 * (second[body] * rates[body] - motion.rotation[body].second * motion.rotation[body].first)
+        exact = np.conj(cadence**2 * centre_second + 1j * GRAVITY) * centre_first
+        couple = cadence**2 * (second[body] * rates[body] - turning_second * turning_first)
         power = power - cadence * (inertia.mass * (force - exact).real + inertia.moment * couple)
-    return np.asarray(power), poses.gap[_NOW]
+    return power, poses.gap[_NOW]
 
 
 _NOW = 2  # of the poses of local_errors
 
 
 class _Pose(NamedTuple):
+    motion: kinematics.Motion  # exact
     links: Mapping[str, ComplexArray]  # origin to tip, with the gaps, m
     rates: Mapping[str, FloatArray]  # rate of each link per crank angle, with the gaps
     gap: FloatArray  # m
@@ -122,7 +124,7 @@ def _pose(design: Design, crank_angle: FloatArray, step: float) -> _Pose:
         carrier = linkage.architecture.pedal_body
         base = linkage.crank_centre if carrier == "crank" else linkage.ground
         close(("thigh", "shank"), carrier, linkage.pedal_offset, 0j, base)
-    return _Pose(links, rates, np.max(gaps, axis=0))
+    return _Pose(motion, links, rates, np.max(gaps, axis=0))
 
 
 # A predicted error may take up this share of its limit. The other half is for the joint moments, which the prediction
