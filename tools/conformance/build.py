@@ -11,7 +11,6 @@ import shutil
 import subprocess
 import sys
 import tomllib
-import venv
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 
@@ -25,7 +24,8 @@ def build(name: str) -> None:
     reader = READERS[name]
     requirements = [*reader.requirements] or [*groups[name], "-c", str(ROOT / "constraints.txt")]
     try:
-        venv.create(ENVIRONMENTS / name, with_pip=True, clear=True)
+        # in a process of its own: a program that one thread still writes cannot be started while another thread forks
+        subprocess.run([sys.executable, "-m", "venv", "--clear", ENVIRONMENTS / name], check=True)
         subprocess.run([ENVIRONMENTS / name / "bin" / "pip", "install", "--quiet", *requirements], check=True)
     except BaseException:
         shutil.rmtree(ENVIRONMENTS / name, ignore_errors=True)
