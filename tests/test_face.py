@@ -1,6 +1,7 @@
 """The public names: each has an example that runs, and results show themselves in a line."""
 
 import doctest
+import inspect
 import math
 from pathlib import Path
 
@@ -8,6 +9,7 @@ import numpy as np
 import pytest
 
 import fes_mj
+from fes_mj.fit.seats import SeatLimits
 from fes_mj.linkage import kinematics
 
 OPTIONS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
@@ -59,7 +61,41 @@ def test_whatever_a_name_gives_shows_itself_in_a_line() -> None:
     assert repr(batch) == "<Design d1: cdt, a batch of 1000>"
 
 
+@pytest.mark.parametrize("name", [name for name in fes_mj.__all__ if not name.endswith("Error")])
+def test_a_wrong_type_is_refused_by_name(name: str) -> None:
+    parameters = inspect.signature(getattr(fes_mj, name)).parameters.values()
+    needed = [one for one in parameters if one.default is one.empty and one.kind == one.POSITIONAL_OR_KEYWORD]
+    first = next(iter(parameters)).name
+    with pytest.raises(fes_mj.InputError, match=rf"^{first} is \(?<object object at 0x\w+>.*; it must be of type"):
+        getattr(fes_mj, name)(*[object()] * max(len(needed), 1))
+
+
 D1, P1P2 = fes_mj.load_design("d1"), fes_mj.load_moments("p1p2")
+BATCH, MUSCLES, RIDE = D1.with_linkage(crank=np.full((3, 1), 0.15)), fes_mj.load_muscles(), fes_mj.Ride(D1, P1P2)
+NO_BATCHES = {
+    "answer": lambda: fes_mj.answer(BATCH),
+    "quasi_static": lambda: fes_mj.quasi_static(BATCH, P1P2),
+    "simulate": lambda: fes_mj.simulate(BATCH, P1P2),
+    "Case": lambda: fes_mj.Case(BATCH, P1P2),
+    "build_mjcf": lambda: fes_mj.build_mjcf(BATCH),
+    "export": lambda: fes_mj.export(BATCH, P1P2, "d1.xml"),
+    "ride": lambda: fes_mj.ride(fes_mj.Ride(BATCH, P1P2)),
+    "starts": lambda: fes_mj.starts(fes_mj.Ride(BATCH, P1P2)),
+    "RideCase": lambda: fes_mj.RideCase(fes_mj.Ride(BATCH, P1P2)).simulation,
+    "stimulated_rider": lambda: fes_mj.stimulated_rider(MUSCLES, BATCH),
+    "stimulation": lambda: fes_mj.stimulation(BATCH),
+    "fit_seat": lambda: fes_mj.fit_seat(BATCH, D1.rider, P1P2),
+    "fit_population": lambda: fes_mj.fit_population(BATCH, P1P2),
+    "fit_seat of riders": lambda: fes_mj.fit_seat(D1, fes_mj.Rider(thigh=np.full((3, 1), 0.5)), P1P2),  # type: ignore[arg-type]
+}
+
+
+@pytest.mark.parametrize("case", NO_BATCHES)
+def test_a_batch_is_refused_where_one_design_is_asked_for(case: str) -> None:
+    with pytest.raises(fes_mj.InputError, match=r"^d1: a batch of designs; .*single\(row\)"):
+        NO_BATCHES[case]()
+
+
 NO_RUNS = {
     "timestep 0": lambda: fes_mj.simulate(D1, P1P2, timestep=0),
     "timestep -1": lambda: fes_mj.build_mjcf(D1, timestep=-1),
@@ -73,12 +109,25 @@ NO_RUNS = {
     "launch nan": lambda: fes_mj.ride(fes_mj.Ride(D1, P1P2, launch=math.nan)),
     "slope nan": lambda: fes_mj.ride(fes_mj.Ride(D1, P1P2, fes_mj.Road(slope=math.nan))),
     "rolling_mass -1": lambda: fes_mj.ride(fes_mj.Ride(D1, P1P2, fes_mj.Road(rolling_mass=-1))),
-    "angles 0": lambda: fes_mj.starts(fes_mj.Ride(D1, P1P2), angles=0),
+    "angles 0": lambda: fes_mj.starts(RIDE, angles=0),
+    "fineness 0": lambda: fes_mj.ride(RIDE, fineness=0),
+    "points 1e\\+12": lambda: fes_mj.quasi_static(D1, P1P2, points=10**12),
+    "cadence 0": lambda: fes_mj.answer(D1, cadence=0),
+    "duty nan": lambda: fes_mj.answer(D1, duty=math.nan),
+    "duty 2": lambda: fes_mj.load_muscles(duty=2),
+    "draws 1": lambda: fes_mj.error_budget(draws=1),
+    "samples 1e\\+09": lambda: fes_mj.fit_population(D1, P1P2, samples=10**9),
+    "limits.up\\[1\\] -1": lambda: fes_mj.fit_seat(D1, D1.rider, P1P2, SeatLimits(up=(0, -1))),
+    "linkage.crank nan": lambda: fes_mj.quasi_static(D1.with_linkage(crank=math.nan), P1P2),
+    "linkage.seat_angle nan": lambda: fes_mj.stimulation(D1.with_linkage(seat_angle=math.nan)),
+    "linkage.ground inf": lambda: fes_mj.simulate(D1.with_linkage(ground=math.inf), P1P2),
+    "rider.mass 0": lambda: fes_mj.simulate(D1.with_rider(mass=0), P1P2),
+    "rider.thigh nan": lambda: fes_mj.fit_seat(D1, fes_mj.Rider(thigh=math.nan), P1P2),
 }
 
 
 @pytest.mark.parametrize("case", NO_RUNS)
 def test_a_number_that_no_run_has_is_refused_by_name_and_value(case: str) -> None:
     name, value = case.split()
-    with pytest.raises(fes_mj.InputError, match=rf"{name} is {value}\b"):
+    with pytest.raises(fes_mj.InputError, match=rf"{name}( \(\w+\))? is {value}\b"):
         NO_RUNS[case]()

@@ -14,6 +14,7 @@ import numpy as np
 
 from fes_mj.budget.budget import paper_powers
 from fes_mj.budget.unknowns import drawn_designs
+from fes_mj.common.arguments import checked
 from fes_mj.common.arrays import FloatArray
 from fes_mj.common.brief import Brief
 from fes_mj.common.errors import InputError
@@ -21,6 +22,7 @@ from fes_mj.linkage import kinematics
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.design_file import load_design
 from fes_mj.linkage.turning import batch_turning, leg_reach
+from fes_mj.linkage.variables import crank_speed
 from fes_mj.moments.files import is_of_group
 from fes_mj.muscles.anatomy import anatomy
 from fes_mj.muscles.drive import Muscles
@@ -28,7 +30,7 @@ from fes_mj.muscles.power import MuscleTurn
 from fes_mj.muscles.pull import pull_each
 from fes_mj.muscles.riders import Riders, load_riders
 from fes_mj.muscles.rules import BEST, stimulated
-from fes_mj.muscles.timing import DUTY, TURN_ANGLES, activation
+from fes_mj.muscles.timing import DUTY, TURN_ANGLES, activation, widths_up_to
 from fes_mj.statics.drive import Drive
 from fes_mj.statics.turn import QuasiStatic
 
@@ -119,6 +121,7 @@ class Answer(Brief):
         }
 
 
+@checked
 def answer(
     design: Design,
     legs: Sequence[QuasiStatic] = (),
@@ -129,12 +132,15 @@ def answer(
     """Both numbers of a design.
 
     legs: its quasi-static turns, one, or two that differ. riders: whose muscles; without them there is no rider.
-    cadence: rad/s, of the design and of the tricycle it is compared with; by default each at 5.71 km/h.
+    cadence: rad/s, of the design and of the tricycle it is compared with; by default each at 5.71 km/h. duty: as for
+    load_muscles. Raises InputError for a batch, and for a cadence or a duty that is none.
 
     >>> design, moments = fes_mj.load_design("d1"), fes_mj.load_moments("p1p2")
     >>> fes_mj.answer(design, [fes_mj.quasi_static(design, moments)], fes_mj.load_muscles("p1p2").riders)
     <Answer d1: as the paper assumes 31.14, for a rider 10.25, per TRT 0.54>
     """
+    crank_speed(design, cadence)
+    widths_up_to(duty)
     mean = float(np.mean([leg.power_mean for leg in legs])) if legs else None
     paper = paper_powers(*legs) if legs else None
     if riders is None:

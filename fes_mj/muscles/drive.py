@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from pathlib import Path
 
+from fes_mj.common.arguments import checked
 from fes_mj.common.brief import Brief
 from fes_mj.common.errors import require_one_of
 from fes_mj.linkage.design import Design
@@ -11,16 +12,17 @@ from fes_mj.moments.joint_moments import JointMoments
 from fes_mj.moments.torque_map import torque_map
 from fes_mj.muscles.riders import Riders, load_riders
 from fes_mj.muscles.rules import BEST, BY_ANGLE, RULES, STIMULATION_BY_ANGLE, Stimulated, stimulated, trial_moments
-from fes_mj.muscles.timing import DUTY, TURN_ANGLES
+from fes_mj.muscles.timing import DUTY, TURN_ANGLES, widths_up_to
 from fes_mj.muscles.torque import MuscleTorque
 
 
+@checked
 @dataclass(frozen=True, eq=False, repr=False)
 class Muscles(Brief):
     """An ensemble of riders and when they are stimulated; a simulation is of the most probable of them.
 
     timing: "best", "measured", "by-angle" or "stimulation-by-angle". duty: largest share of the turn in which a group
-    is stimulated, with timing "best".
+    is stimulated, with timing "best". Raises InputError for a timing or a duty that is none.
 
     >>> fes_mj.load_muscles("p1p2")
     <Muscles p1p2 muscles, timing best>
@@ -32,6 +34,7 @@ class Muscles(Brief):
 
     def __post_init__(self) -> None:
         require_one_of("timing", self.timing, RULES)
+        widths_up_to(self.duty)
 
     @property
     def brief(self) -> str:
@@ -71,6 +74,7 @@ class Muscles(Brief):
         )
 
 
+@checked
 def load_muscles(source: str | Path = "p1p2", timing: str = BEST, duty: float = DUTY) -> Muscles:
     """Stimulated muscles of a rider group, or of an ensemble's file (.npz). Raises InputError for what is none.
 

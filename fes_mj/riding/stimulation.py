@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from fes_mj.common.arguments import checked
 from fes_mj.common.arrays import FloatArray
 from fes_mj.common.brief import Brief
 from fes_mj.linkage import kinematics
@@ -93,6 +94,7 @@ class Window(Brief):
         }
 
 
+@checked
 def stimulation(design: Design, legs: int = 2) -> list[Window]:
     """Windows of every muscle group, of both legs or the right one alone; by muscle, leg, and crank angle.
 

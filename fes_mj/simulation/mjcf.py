@@ -13,6 +13,7 @@ from typing import Any, Literal
 import mujoco
 import numpy as np
 
+from fes_mj.common.arguments import checked
 from fes_mj.common.errors import InputError
 from fes_mj.common.units import RPM
 from fes_mj.linkage import kinematics
@@ -91,6 +92,7 @@ class ModelOptions:
 COMPLETE, UNDRAWN = ModelOptions(), ModelOptions(drawn=False)
 
 
+@checked
 def build_mjcf(
     design: Design,
     *,
