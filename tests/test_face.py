@@ -3,6 +3,7 @@
 import doctest
 import inspect
 import math
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -68,6 +69,12 @@ def test_a_wrong_type_is_refused_by_name(name: str) -> None:
     first = next(iter(parameters)).name
     with pytest.raises(fes_mj.InputError, match=rf"^{first} is \(?<object object at 0x\w+>.*; it must be of type"):
         getattr(fes_mj, name)(*[object()] * max(len(needed), 1))
+
+
+def test_an_argument_that_there_is_not_is_refused_by_name() -> None:
+    for called in (D1.with_linkage, D1.with_rider, partial(fes_mj.optimize, "crt", P1P2), partial(fes_mj.ride, RIDE)):
+        with pytest.raises(fes_mj.InputError, match="'nothing'"):
+            called(nothing=1)
 
 
 D1, P1P2 = fes_mj.load_design("d1"), fes_mj.load_moments("p1p2")

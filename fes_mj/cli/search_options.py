@@ -6,7 +6,7 @@ import os
 import shlex
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Group, Parameter
 from cyclopts.validators import Number, mutually_exclusive
@@ -27,6 +27,9 @@ from fes_mj.common.errors import require_extra
 from fes_mj.common.provenance import provenance
 from fes_mj.linkage.riders import PEOPLE_PER_SEX
 from fes_mj.muscles.rules import BEST
+
+if TYPE_CHECKING:
+    from fes_mj.optimization.problem import ProblemOptions
 
 Methods = Literal["differential-evolution", "cma-es", "nsga-ii", "random-pursuit"]
 _Speed = Annotated[float, Parameter(validator=Number(gt=0))]
@@ -134,7 +137,7 @@ class SearchOptions(PrintOptions, MomentsOptions):
 
         return {key: value for key in KEYS if (value := getattr(self, key)) is not None}
 
-    def problem_options(self) -> dict[str, Any]:
+    def problem_options(self) -> ProblemOptions:
         """What they ask of the problem, as make_problem takes it."""
         from fes_mj.optimization.limits import DEFAULT
         from fes_mj.optimization.people import ONE_RIDER, sampled

@@ -35,9 +35,13 @@ def checked(called: Called, arrays: bool = False) -> Called:
 
     @cache
     def types() -> dict[str, Any]:
-        of_each = [name for name, one in parameters.parameters.items() if one.kind == Parameter.VAR_POSITIONAL]
         hints = get_type_hints(called)
-        return hints | {name: GenericAlias(tuple, (hints[name], ...)) for name in of_each}
+        for name, one in parameters.parameters.items():
+            if one.kind == Parameter.VAR_POSITIONAL:
+                hints[name] = GenericAlias(tuple, (hints[name], ...))
+            if one.kind == Parameter.VAR_KEYWORD:  # for another function, which looks at them
+                hints[name] = Any
+        return hints
 
     @wraps(called)
     def call(*positional: Any, **named: Any) -> Any:
@@ -47,8 +51,9 @@ def checked(called: Called, arrays: bool = False) -> Called:
             raise InputError(f"{called.__qualname__.removesuffix('.__init__')}: {error}") from None
         for name, value in given.items():
             allowed = types().get(name, Any)
-            is_default = value is parameters.parameters[name].default
-            if not (is_default or _is(value, allowed) or (arrays and allowed in _NUMBERS and _is_array(value, "iufc"))):
+            if type(value) is allowed or value is parameters.parameters[name].default:  # of most, and fast
+                continue
+            if not (_is(value, allowed) or (arrays and allowed in _NUMBERS and _is_array(value, "iufc"))):
                 raise InputError(f"{name} is {_shown(value)}; it must be of type {_name(allowed)}")
         return called(*positional, **named)
 

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from contextlib import nullcontext, suppress
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 from numpy.random import SeedSequence
@@ -24,7 +24,7 @@ from fes_mj.optimization.findings import Findings
 from fes_mj.optimization.limits import MEANINGS, PIVOTS, VARIED
 from fes_mj.optimization.moment_drive import MomentDrive
 from fes_mj.optimization.pareto import Front, pareto_front
-from fes_mj.optimization.problem import LENGTH_COUNT, Evaluation, Problem, make_problem
+from fes_mj.optimization.problem import LENGTH_COUNT, Evaluation, Problem, ProblemOptions, make_problem
 from fes_mj.optimization.repair import changes, repaired
 from fes_mj.optimization.search import BUDGETS, METHODS, BudgetSpentError, Search, SearchResult, Start, usual_budget
 from fes_mj.statics.cycles import cycles
@@ -144,7 +144,7 @@ def optimize(
     workers: Workers = HERE,
     findings: Findings | None = None,
     progress: Callable[[int], None] = lambda _: None,
-    **problem: Any,
+    **problem: Unpack[ProblemOptions],
 ) -> Optimum:
     """The linkage of a kind ("crt", "cdt", "trt") with the most mean crank power under joint moments that can be built.
 
@@ -152,7 +152,7 @@ def optimize(
     one and weighs the powers of both rider groups and, if `smooth`, the least fluctuation of energy. budget:
     evaluations of each search, by default search.usual_budget. seed: the same one finds the same design, wherever the
     searches run. findings: where results are kept, and finished ones taken from. progress is told how many more
-    of the budgets' evaluations are behind. problem: limits, start, people: the arguments of make_problem.
+    of the budgets' evaluations are behind. problem: limits, start, people: as for make_problem.
 
     Raises InputError for what make_problem refuses, a method that is none, a budget or number of searches below 1, a
     negative seed, what the method cannot do, an infeasible start, and if no search finds anything feasible;

@@ -6,10 +6,11 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
+from typing import Any, TypedDict
 
 import numpy as np
 
+from fes_mj.common.arguments import checked
 from fes_mj.common.arrays import BoolArray, FloatArray
 from fes_mj.common.errors import InputError, require_one_of, require_within
 from fes_mj.common.units import RPM, turns_per_second
@@ -247,6 +248,23 @@ class Problem:
         return np.asarray(np.where([c.at_least for c in self.motion], riders.min(axis=1), riders.max(axis=1)))
 
 
+class ProblemOptions(TypedDict, total=False):
+    """What make_problem takes by name, for those who hand it on."""
+
+    compared_with: str
+    start: str | None
+    like: str | None
+    limits: str | Path
+    build: Mapping[str, float] | None
+    knee_speed: float | None
+    hip_speed: float | None
+    caution: float
+    ripple: float | None
+    people: People
+    muscles: MuscleDrive | None
+
+
+@checked
 def make_problem(
     kind: str,
     moments: JointMoments,
@@ -254,7 +272,7 @@ def make_problem(
     compared_with: str = "trt",
     start: str | None = None,
     like: str | None = None,
-    limits: Path = DEFAULT,
+    limits: str | Path = DEFAULT,
     build: Mapping[str, float] | None = BUILDABLE,
     knee_speed: float | None = None,
     hip_speed: float | None = None,
@@ -287,7 +305,7 @@ def make_problem(
         raise InputError(f"start is {start}, a {base.linkage.kind}, not a {kind}; start from a design of that kind")
     elif like or compared_with not in DESIGNS:
         template = replace(template, rider=base.rider).with_linkage(seat_angle=base.linkage.seat_angle)
-    allowed = load_limits(limits, build)
+    allowed = load_limits(Path(limits), build)
     pivots = [template.linkage.ground, template.linkage.crank_centre]
     if limits == DEFAULT and depth_inside(allowed.polygon, np.array(pivots)).min() < 0:
         allowed = allowed.holding(pivots, PIVOT_ROOM)

@@ -3,7 +3,7 @@
 import math
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, get_type_hints
 
 import numpy as np
 import pytest
@@ -13,9 +13,17 @@ from fes_mj.linkage.design_file import SIX_BARS, design_toml
 from fes_mj.linkage.turning import turning
 from fes_mj.linkage.variables import crank_speed
 from fes_mj.optimization.optimize import run_searches
-from fes_mj.optimization.problem import LENGTH_COUNT, Problem
+from fes_mj.optimization.problem import LENGTH_COUNT, Problem, ProblemOptions, make_problem
 from fes_mj.statics.cycles import joint_speeds
 from tests.optimization.conftest import TABLE, problem_of
+
+POSITIONAL = ("kind", "moments", "return")
+
+
+def test_what_a_problem_takes_by_name_is_handed_on_whole() -> None:
+    """One list is for type checkers, one is the signature."""
+    asked = get_type_hints(make_problem)
+    assert get_type_hints(ProblemOptions) == {name: asked[name] for name in asked if name not in POSITIONAL}
 
 
 def population(problem: Problem, count: int = 2000, seed: int = 0, step: float = 0.02) -> np.ndarray:
