@@ -1,8 +1,11 @@
 """The public names: each has an example that runs, and results show themselves in a line."""
 
+import ast
 import doctest
 import inspect
 import math
+import re
+from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
 
@@ -75,6 +78,27 @@ def test_an_argument_that_there_is_not_is_refused_by_name() -> None:
     for called in (D1.with_linkage, D1.with_rider, partial(fes_mj.optimize, "crt", P1P2), partial(fes_mj.ride, RIDE)):
         with pytest.raises(fes_mj.InputError, match="'nothing'"):
             called(nothing=1)
+
+
+PACKAGE = Path(fes_mj.__file__).parent
+LIBRARY = [path for path in PACKAGE.rglob("*.py") if path.relative_to(PACKAGE).parts[0] not in ("cli", "explore")]
+
+
+def words(path: Path) -> Iterator[str]:
+    """What a module says, without docstrings; a value in the middle is left out."""
+    tree = ast.parse(path.read_text())
+    for parent in ast.walk(tree):
+        for node in ast.iter_child_nodes(parent):
+            if isinstance(node, ast.JoinedStr):
+                yield "".join(part.value for part in node.values if isinstance(part, ast.Constant))
+            elif isinstance(node, ast.Constant) and not isinstance(parent, ast.JoinedStr | ast.Expr):
+                yield str(node.value)
+
+
+def test_what_the_library_says_names_no_options() -> None:
+    """Who calls it from Python has none; a whole command in backticks, as the way out, is understood by everybody."""
+    named = [text for path in LIBRARY for text in words(path) if re.search("--[a-z]", re.sub("`[^`]*`", "", text))]
+    assert named == []
 
 
 D1, P1P2 = fes_mj.load_design("d1"), fes_mj.load_moments("p1p2")

@@ -8,6 +8,7 @@ from fes_mj.common.console import number, print_table, say
 from fes_mj.optimization.limits import MEANINGS, Meaning
 
 ALL = "all"
+_OPTIONS = {"knee_speed": "--knee-speed-limit", "hip_speed": "--hip-speed-limit", "speed_ripple": "--ripple-limit"}
 
 
 def explain(name: str, options: PrintOptions) -> int:
@@ -15,7 +16,8 @@ def explain(name: str, options: PrintOptions) -> int:
     if name == ALL:
         checks = definitions().values()
         options.show(lambda: {"checks": [asdict(check) for check in checks]}, lambda: _print_all([*checks]))
-    elif meaning := MEANINGS.get(name.strip().lower().replace(" ", "_").replace("-", "_")):
+    elif meaning := MEANINGS.get(key := name.strip().lower().replace(" ", "_").replace("-", "_")):
+        meaning = meaning._replace(where=_OPTIONS.get(key, meaning.where))
         options.show(lambda: {"name": name} | meaning._asdict(), lambda: _print_limit(name, meaning))
     else:
         check = find(name)

@@ -53,7 +53,7 @@ def run_tasks(
             if type(error).__name__ == "TerminatedWorkerError":
                 raise InputError(
                     "a worker process died (killed, or out of memory); what was finished is kept: start it again, with "
-                    "fewer --jobs"
+                    "fewer jobs"
                 ) from None
             raise
 
@@ -89,7 +89,7 @@ def _backend(joblib: Any, workers: Workers) -> AbstractContextManager[Any]:
         client = distributed.Client(workers.cluster, timeout=SCHEDULER_PATIENCE, set_as_default=False)
     except (OSError, TimeoutError, ValueError) as error:
         raise InputError(
-            f"--cluster {workers.cluster}: no Dask scheduler answers there ({type(error).__name__}); "
+            f"cluster {workers.cluster}: no Dask scheduler answers there ({type(error).__name__}); "
             "give the tcp://host:port that `dask scheduler` prints"
         ) from None
     stack = ExitStack()  # the client is closed last

@@ -53,7 +53,7 @@ def design_path(source: str | Path, dims: str = "identified") -> Path:
         return _FOLDER / dims / f"{source}.toml"
     path = Path(source)
     if dims != DIMENSIONS[0]:
-        raise InputError(f"{source}: only the paper's designs have {dims} dimensions; leave out --dims for a file")
+        raise InputError(f"{source}: only the paper's designs have {dims} dimensions; leave out dims for a file")
     if path.suffix != ".toml" and (len(str(source)) > 255 or "\0" in str(source) or not path.exists()):
         raise InputError(f"{source}: no such design; it must be one of {', '.join(DESIGNS)} or a path to a .toml file")
     return path

@@ -18,7 +18,9 @@ from fes_mj.moments.turn import Turn
 ANGLE_ERROR = 5.0  # deg: of joint angles by markers (McGinley et al. 2009, doi:10.1016/j.gaitpost.2008.09.003)
 _ZERO_ERROR = 10.0  # deg of crank angle: moments that far off lose 2 % of their power
 _TURN = np.radians(np.arange(360.0))
-_ADVICE = "was it on this tricycle, with this rider? Measure R1, R2, seat and legs again, or see --identify"
+_ADVICE = (
+    "was it on this tricycle, with this rider? Measure R1, R2, seat and legs again, or `fes_mj moments FILE --identify`"
+)
 
 
 def counting(joint: str, counted: CountedAngle, convention: Convention) -> Iterator[Comparison]:

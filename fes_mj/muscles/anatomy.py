@@ -77,7 +77,7 @@ class Anatomy:
         inside = [(np.radians(low) <= angle) & (angle <= np.radians(high)) for angle, (low, high) in ranges]
         return np.asarray(np.logical_and(*inside).all(axis=-1))
 
-    def require_range(self, name: str, flexion: Flexion, advice: str = "move the seat, or use --drive moments") -> None:
+    def require_range(self, name: str, flexion: Flexion, advice: str = "move the seat, or use joint moments") -> None:
         """Raise InputError, naming the joint, where a motion leaves the angles for which lengths are known."""
         for joint, (low, high) in (("hip", self.hip_deg), ("knee", self.knee_deg)):
             angle = np.degrees(getattr(flexion, joint))

@@ -266,7 +266,7 @@ MEANINGS = {
         for joint in JOINTS
         for end, size in (("min", "smallest"), ("max", "largest"))
     },
-    **{f"{joint}_speed": Meaning(f"mean {joint} speed", f"--{joint}-speed-limit") for joint in JOINTS},
+    **{f"{joint}_speed": Meaning(f"mean {joint} speed", f"the limit on the {joint} speed") for joint in JOINTS},
     **{f"{joint}_overlap": Meaning(f"how far the {joint} comes into the moments' range", "always") for joint in JOINTS},
     **{
         f"{joint}_muscles": Meaning(f"how far the {joint} stays within the known lengths of muscles", "always")
@@ -274,7 +274,7 @@ MEANINGS = {
     },
     "gear_ratio_min": Meaning("gear ratio, of the slowest cadence that can be run", "always"),
     "gear_ratio": Meaning("gear ratio: crank turns per turn of the wheel", "limits.gear_ratio_max"),
-    "speed_ripple": Meaning("ripple of the crank's speed", "--ripple-limit"),
+    "speed_ripple": Meaning("ripple of the crank's speed", "the limit on the ripple"),
     "hole_distance": Meaning("least distance of two holes in a link", "limits.hole_distance_min"),
     "transmission_angle": Meaning("smallest transmission angle of any two links", "limits.transmission_angle_min"),
     "hip_swing": Meaning("how far the hip moves", "limits.hip_swing_min"),

@@ -38,7 +38,8 @@ def repaired(problem: Problem, start: FloatArray, seed: int = 0) -> FloatArray:
                 best, violation = evaluation.x[least], evaluation.violation[least]
     raise InputError(
         f"{problem.template.name}: no design near it keeps the limits; the nearest one: "
-        f"{problem.violations_text(best)}. --print-problem writes a problem file in which these can be changed"
+        f"{problem.violations_text(best)}. `fes_mj optimize {problem.template.linkage.kind} --print-problem` writes a "
+        "problem file in which these can be changed"
     )
 
 

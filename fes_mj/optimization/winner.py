@@ -106,7 +106,7 @@ class Winner(Assessed):
         """What to beware of."""
         notes = []
         if self.gain and 0 < self.gain.mean <= self.gain.deviation:
-            notes.append("the gain is within the error bar of the recovered moments; --caution 1 looks for a surer one")
+            notes.append("the gain is within the error bar of the recovered moments; caution 1 looks for a surer one")
         if self.reversals.knee > 2:
             notes.append("the knee swings more than once per turn of the crank; can the muscles follow?")
         return notes

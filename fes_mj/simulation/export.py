@@ -134,7 +134,7 @@ def export(
     require_replaceable([files["table"]], "the table", inputs)
     if scene:
         if out.name.lower() == _SCENE or printable(out.name) != out.name:
-            raise InputError(f"{out}: --scene writes {_SCENE}, which names the model; give the model another name")
+            raise InputError(f"{out}: the scene is {_SCENE}, which names the model; give the model another name")
         files["scene"] = out.with_name(_SCENE)
         require_replaceable([files["scene"]], "the scene", inputs)
     texts = {

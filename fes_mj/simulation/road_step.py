@@ -69,7 +69,7 @@ def _within_reason(trace: Trace, step: float) -> float:
         size = f"{needed:,.0f}" if math.isfinite(needed) else "endlessly many"
         raise InputError(
             f"{trace.ride.name}: the ride needs {size} time steps, more than {MOST_ROAD_STEPS:,}; give a shorter "
-            "--duration, or keep the links farther from their dead centres"
+            "duration, or keep the links farther from their dead centres"
         )
     return step
 

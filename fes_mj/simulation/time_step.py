@@ -164,11 +164,11 @@ def steps_per_turn(design: Design, cadence: float, timestep: float | None = None
     steps = max(1, round(needed)) if math.isfinite(needed) else math.inf
     if turns * steps > MOST_STEPS:
         if timestep is not None:
-            way_out = "give fewer turns or a longer --timestep"
+            way_out = "give fewer turns or a longer time step"
         elif steps <= MOST_STEPS:
             way_out = f"give at most {MOST_STEPS // steps} turns"
         else:
-            way_out = "give a slower --cadence, or keep the links farther from their dead centres"
+            way_out = "give a slower cadence, or keep the links farther from their dead centres"
         size = f"{turns:g} x {steps:,}" if steps < math.inf else "endlessly many"
         raise InputError(
             f"{design.name}: at {cadence / RPM:.4g} rpm the run needs {size} time steps, more than {MOST_STEPS:,}; "

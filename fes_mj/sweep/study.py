@@ -129,7 +129,7 @@ def load_study(path: Path, cadence: float | None = None, muscles: MuscleOptions 
     grid.content.setdefault("moments", [RIDER_GROUPS[0]])
     if cadence is not None:
         if "cadence_rpm" in grid.content or "cadence_rpm" in sample.content:
-            raise InputError(f"{path}: cadence_rpm is given here; leave out --cadence")
+            raise InputError(f"{path}: cadence_rpm is given here; leave out the one beside the study")
         grid.content["cadence_rpm"] = [cadence]
     analysis, size = settings.choice("analysis", ANALYSES, "static"), _few(sample, "size", sample.whole("size", 1))
     points = size * math.prod(_count(grid, axis) for axis in grid.content)
@@ -160,12 +160,14 @@ def _stimulated(settings: Section, muscles: MuscleOptions, names: list[str]) -> 
     """Muscles that drive by the names of the moments. Refuses names of which no muscles are known."""
     widths_up_to(muscles.duty)
     if muscles.riders and len(names) > 1:
-        raise InputError(f"{settings.path}: grid.moments has {len(names)} names; --muscles is one ensemble for one")
+        raise InputError(
+            f"{settings.path}: grid.moments has {len(names)} names; an ensemble of riders is for one alone"
+        )
     unknown = [name for name in names if name not in RIDER_GROUPS]
     if unknown and not muscles.riders:
         raise InputError(
             f"{settings.path}: grid.moments has {unknown[0]}, of which no muscles are known; keep to "
-            f"{', '.join(RIDER_GROUPS)}, or give an ensemble with --muscles"
+            f"{', '.join(RIDER_GROUPS)}, or give an ensemble of riders"
         )
     return {name: load_muscles(muscles.riders or name, muscles.rule, muscles.duty) for name in names}
 

@@ -23,7 +23,7 @@ def show(design: Design, drive: Drive, cadence: float) -> None:
         if not glfw.init():  # the viewer itself would end the process
             raise MissingPartError(
                 "the viewer needs a screen and there is none; make a video instead: "
-                "fes_mj simulate ... --render out.mp4"
+                "`fes_mj simulate ... --render out.mp4`"
             )
     model = mujoco.MjModel.from_xml_string(
         scene_text(design, "model.xml"), {"model.xml": mjcf_text(build_mjcf(design, cadence=cadence, legs=2)).encode()}

@@ -47,5 +47,5 @@ def test_any_name_in_every_output(
 
 def test_a_scene_cannot_name_every_model(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["export", "d1", "-o", str(tmp_path / "a\x1b.xml"), "--scene"]) == 2
-    assert r"a\x1b.xml: --scene writes scene.xml" in capsys.readouterr().err
+    assert r"a\x1b.xml: the scene is scene.xml" in capsys.readouterr().err
     assert not [*tmp_path.iterdir()]

@@ -33,5 +33,7 @@ def test_a_kept_length_is_not_a_change() -> None:
 def test_what_nothing_repairs_names_its_keys() -> None:
     problem = problem_of("d1")
     impossible = replace(problem, limits=replace(problem.limits, knee_deg=(69.0, 69.5), crank_min=0.25))
-    with pytest.raises(fes_mj.InputError, match=r"d1: no design near it .*set by limits\.\w+\).*--print-problem"):
+    with pytest.raises(
+        fes_mj.InputError, match=r"d1: no design near it .*set by limits\.\w+\).*fes_mj optimize cdt --print-problem"
+    ):
         repaired(impossible, problem.variables(problem.template))
