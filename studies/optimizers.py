@@ -22,7 +22,7 @@ from fes_mj.optimization.moment_drive import MomentDrive
 from fes_mj.optimization.optimize import run_searches
 from fes_mj.optimization.pareto import pareto_front
 from fes_mj.optimization.problem import Problem
-from fes_mj.optimization.search import SearchResult
+from fes_mj.optimization.search import BUDGETS, SearchResult
 from fes_mj.optimization.winner import Winner, assess, gain
 from fes_mj.statics.cycles import joint_speeds
 from fes_mj.statics.work_table import WorkTable, uncertain_table
@@ -88,8 +88,10 @@ def compare(target: str) -> list[Row]:
     task = problem(target, manufacturable=False)
     printed_variables = task.variables(task.template)
     options: dict[str, Any] = {"searches": SEEDS, "seed": 1, "workers": WORKERS}
-    pursued = run_searches(task, "random-pursuit", **options)
-    from_own = run_searches(task, "random-pursuit", start=printed_variables, **options | {"searches": 2})
+    usual = BUDGETS["random-pursuit"]
+    pursued = run_searches(task, "random-pursuit", budget=usual, **options)
+    own = options | {"searches": 2}
+    from_own = run_searches(task, "random-pursuit", budget=usual, start=printed_variables, **own)
     median = float(np.median([result.merit for result in pursued]))
     printed = float(task.evaluate(printed_variables[None]).power[0, 0])
     rows = [

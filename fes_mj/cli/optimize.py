@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
@@ -48,16 +49,9 @@ def optimize(
     """
     options.check()
     if options.print_problem:
-        asked = {"--out": out, "--report": report, "--json": options.json, "--quiet": options.quiet}
-        refuse_beside("--print-problem", asked)
+        return _print_problem(kind, options, {"--out": out, "--report": report})
     _check_files(out, report, options)
     moments, compared_with = options.load_moments(), load_design(options.like or options.speeds_of)
-    if options.print_problem:
-        from fes_mj.optimization.problem import make_problem
-        from fes_mj.optimization.problem_file import problem_text
-
-        print(problem_text(make_problem(kind, moments, **options.problem_options())), end="")
-        return 0
     command = options.command(kind) + (f" -o {shell_word(out.name)}" if out else "")
     origin = f"Found by fes_mj {version('fes-mj')}:\n{command}"
     from fes_mj.optimization.findings import Findings
@@ -69,22 +63,10 @@ def optimize(
         files = _write(optimum, origin, findings.out, options) if findings else {}
         winner = _assess(optimum, compared_with, moments, options.seed)
         if report:
-            from fes_mj.optimization.page import page_html
-            from fes_mj.optimization.winner import Winner
-
-            assert isinstance(winner, Winner)  # _check_files
-            write_text(report, page_html(winner, optimum, origin))
+            _write_report(report, winner, optimum, origin)
             files["report"] = str(report)
     except (KeyboardInterrupt, Exception) as error:
-        code = interruption_code(error)
-        if code is None or not findings or (power := findings.power) is None:
-            raise
-        errors.print(
-            f"fes_mj: interrupted; the best so far, {power:.2f} W, is saved in "
-            f"{printable(str(findings.so_far))}; the same command goes on from there",
-            soft_wrap=True,
-        )
-        return code
+        return _interrupted(error, findings)
     if findings:
         findings.remove()
     options.show(
@@ -97,27 +79,50 @@ def optimize(
 
 def _search(kind: str, moments: fes_mj.JointMoments, options: SearchOptions, findings: Findings | None) -> Optimum:
     """The best of all searches, with a bar that counts evaluations and says how long they take."""
-    from fes_mj.optimization.search import usual_budget
+    return fes_mj.optimize(
+        kind,
+        moments,
+        method=options.method,
+        budget=options.budget,
+        searches=options.searches,
+        seed=options.seed,
+        smooth=options.smooth,
+        workers=Workers(options.jobs, options.cluster),
+        findings=findings,
+        progress=partial(progress_bar, f"{options.method}, evaluations", silent=options.silent),
+        **options.problem_options(),
+    )
 
-    searches = 1 if options.method == "nsga-ii" else options.searches
-    problem = options.problem_options()
-    budget = options.budget
-    if budget is None:
-        budget = usual_budget(options.method, options.drive.drive == "muscles")
-    with progress_bar(f"{options.method}, evaluations", searches * budget, options.silent) as advance:
-        return fes_mj.optimize(
-            kind,
-            moments,
-            method=options.method,
-            budget=budget,
-            searches=options.searches,
-            seed=options.seed,
-            smooth=options.smooth,
-            workers=Workers(options.jobs, options.cluster),
-            findings=findings,
-            progress=advance,
-            **problem,
-        )
+
+def _print_problem(kind: str, options: SearchOptions, files: dict[str, Path | None]) -> int:
+    """The problem file of what is asked for, to standard output, where nothing else may go."""
+    refuse_beside("--print-problem", files | {"--json": options.json, "--quiet": options.quiet})
+    from fes_mj.optimization.problem import make_problem
+    from fes_mj.optimization.problem_file import problem_text
+
+    print(problem_text(make_problem(kind, options.load_moments(), **options.problem_options())), end="")
+    return 0
+
+
+def _write_report(report: Path, winner: Winner | MuscleWinner, optimum: Optimum, origin: str) -> None:
+    from fes_mj.optimization.page import page_html
+    from fes_mj.optimization.winner import Winner
+
+    assert isinstance(winner, Winner)  # _check_files
+    write_text(report, page_html(winner, optimum, origin))
+
+
+def _interrupted(error: BaseException, findings: Findings | None) -> int:
+    """Say where the best so far is, and give the exit code. Raises the error itself where nothing was found."""
+    code = interruption_code(error)
+    if code is None or not findings or (power := findings.power) is None:
+        raise error
+    errors.print(
+        f"fes_mj: interrupted; the best so far, {power:.2f} W, is saved in "
+        f"{printable(str(findings.so_far))}; the same command goes on from there",
+        soft_wrap=True,
+    )
+    return code
 
 
 def _assess(

@@ -2,10 +2,10 @@
 
 import math
 from collections.abc import Callable
-from contextlib import nullcontext, suppress
+from contextlib import AbstractContextManager, nullcontext, suppress
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from typing import Any, Unpack
+from typing import Any, TypeAlias, Unpack
 
 import numpy as np
 from numpy.random import SeedSequence
@@ -26,10 +26,11 @@ from fes_mj.optimization.moment_drive import MomentDrive
 from fes_mj.optimization.pareto import Front, pareto_front
 from fes_mj.optimization.problem import LENGTH_COUNT, Evaluation, Problem, ProblemOptions, make_problem
 from fes_mj.optimization.repair import changes, repaired
-from fes_mj.optimization.search import BUDGETS, METHODS, BudgetSpentError, Search, SearchResult, Start, usual_budget
+from fes_mj.optimization.search import BUDGETS, METHODS, MUSCLE_BUDGET, BudgetSpentError, Search, SearchResult, Start
 from fes_mj.statics.cycles import cycles
 from fes_mj.statics.work_table import WorkTable
 
+Advance: TypeAlias = Callable[[int], None]  # told how many more evaluations are behind
 _AT_EDGE = 0.01  # of a constraint's scale, or of a search range
 
 
@@ -143,16 +144,17 @@ def optimize(
     smooth: bool = False,
     workers: Workers = HERE,
     findings: Findings | None = None,
-    progress: Callable[[int], None] = lambda _: None,
+    progress: Callable[[int], AbstractContextManager[Advance]] = lambda _: nullcontext(lambda _: None),
     **problem: Unpack[ProblemOptions],
 ) -> Optimum:
     """The linkage of a kind ("crt", "cdt", "trt") with the most mean crank power under joint moments that can be built.
 
     method: one of search.METHODS, of which the best of so many independent searches counts, or "nsga-ii", which makes
     one and weighs the powers of both rider groups and, if `smooth`, the least fluctuation of energy. budget:
-    evaluations of each search, by default search.usual_budget. seed: the same one finds the same design, wherever the
-    searches run. findings: where results are kept, and finished ones taken from. progress is told how many more
-    of the budgets' evaluations are behind. problem: limits, start, people: as for make_problem.
+    evaluations of each search, by default search.BUDGETS, under muscles MUSCLE_BUDGET. seed: the same one finds the
+    same design, wherever the searches run. findings: where results are kept, and finished ones taken from. progress:
+    given the number of all evaluations, opens what is told how many more of them are behind. problem: limits, start,
+    people: as for make_problem.
 
     Raises InputError for what make_problem refuses, a method that is none, a budget or number of searches below 1, a
     negative seed, what the method cannot do, an infeasible start, and if no search finds anything feasible;
@@ -177,16 +179,18 @@ def optimize(
         drawn = task.variables(task.template)
         start = drawn if task.evaluate(drawn[None]).feasible[0] else repaired(task, drawn, seed)
         repair = changes(drawn, start)
-    with findings.searching(task) if findings else nullcontext():
+    if budget is None:
+        budget = BUDGETS[method] if task.drive.proportional else MUSCLE_BUDGET
+    count = 1 if method == "nsga-ii" else searches
+    with findings.searching(task) if findings else nullcontext(), progress(count * budget) as advance:
         if method == "nsga-ii":
-            budget = usual_budget(method) if budget is None else budget
             front = _front(task, moments, budget, seed, smooth, findings)
-            progress(budget)
+            advance(budget)
             best = front.x[int(np.argmax(front.power.mean(axis=1)))]
             return Optimum(task, method, name, best, front.evaluations, front)
         results = run_searches(
             task, method, searches=searches, budget=budget, seed=seed, start=start,
-            workers=workers, findings=findings, progress=progress,
+            workers=workers, findings=findings, progress=advance,
         )  # fmt: skip
     return Optimum(task, method, name, results[0].x, sum(result.evaluations for result in results), repair=repair)
 
@@ -205,22 +209,21 @@ def run_searches(
     problem: Problem,
     method: str,
     *,
+    budget: int,
     searches: int = 1,
-    budget: int | None = None,
     seed: int = 0,
     start: Start = None,
     workers: Workers = HERE,
     findings: Findings | None = None,
-    progress: Callable[[int], None] = lambda _: None,
+    progress: Advance = lambda _: None,
 ) -> list[SearchResult]:
     """Independent searches of a problem, best first; otherwise as optimize.
 
-    start: ten variables, feasible; by default random. Searches on a cluster, which may not see the files of findings,
-    are kept when finished.
+    start: ten variables, feasible; by default random. progress: told how many more evaluations are behind. Searches on
+    a cluster, which may not see the files of findings, are kept when finished.
     """
     seeds = SeedSequence(seed).spawn(searches)
     outcomes: dict[int, SearchResult | InputError] = {**findings.finished()} if findings else {}
-    budget = usual_budget(method, not problem.drive.proportional) if budget is None else budget
     here = workers.jobs == 1 and not workers.cluster
     progress(budget * len(outcomes))
     missing = [number for number in range(searches) if number not in outcomes]

@@ -11,7 +11,7 @@ import numpy as np
 from scipy.optimize import OptimizeResult, differential_evolution
 
 from fes_mj.common.arrays import FloatArray
-from fes_mj.common.errors import InputError, require_extra, require_one_of
+from fes_mj.common.errors import InputError, require_extra
 from fes_mj.optimization.problem import INFEASIBLE, LENGTH_COUNT, Problem
 
 Improved: TypeAlias = Callable[[FloatArray, float], None]  # a feasible design, shape (variables,), and its merit
@@ -202,13 +202,7 @@ METHODS: dict[str, Method] = {
     "cma-es": cma_es,
     "random-pursuit": random_pursuit,
 }
-# Evaluations of one search. Random pursuit stops by itself, after 0.04 to 1 million trials. Under muscles an evaluation
-# takes a thousand times as long.
+# Usual evaluations of one search. Random pursuit stops by itself, after 0.04 to 1 million trials. Under muscles an
+# evaluation takes a thousand times as long.
 BUDGETS = {"differential-evolution": 50_000, "cma-es": 50_000, "random-pursuit": 5_000_000, "nsga-ii": 50_000}
 MUSCLE_BUDGET = 3000
-
-
-def usual_budget(method: str, muscles: bool = False) -> int:
-    """Evaluations of one search by a method, with muscles or without. Raises InputError for no method."""
-    require_one_of("method", method, BUDGETS)
-    return MUSCLE_BUDGET if muscles else BUDGETS[method]

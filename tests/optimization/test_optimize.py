@@ -1,11 +1,13 @@
 """One call for every method: seeds, budgets and processes."""
 
+from contextlib import AbstractContextManager, nullcontext
+
 import numpy as np
 import pytest
 
 import fes_mj
 from fes_mj.common.parallel import Workers
-from fes_mj.optimization.optimize import METHODS, optimize, run_searches
+from fes_mj.optimization.optimize import METHODS, Advance, optimize, run_searches
 from fes_mj.optimization.problem import make_problem
 from tests.optimization.conftest import problem_of
 
@@ -57,8 +59,11 @@ def test_processes_find_the_same_design() -> None:
 def test_progress_counts_the_evaluations_of_all_searches(jobs: int) -> None:
     """In this process as they are made, elsewhere when a search is through; at the end all of them."""
     told: list[int] = []
-    fes_mj.optimize(
-        "crt", fes_mj.load_moments("p1p2"), budget=1000, searches=2, workers=Workers(jobs), progress=told.append
-    )
+
+    def opened(total: int) -> AbstractContextManager[Advance]:
+        assert total == 2000
+        return nullcontext(told.append)
+
+    fes_mj.optimize("crt", fes_mj.load_moments("p1p2"), budget=1000, searches=2, workers=Workers(jobs), progress=opened)
     assert sum(told) == 2000
     assert (max(told) < 1000) == (jobs == 1)
