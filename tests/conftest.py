@@ -4,6 +4,7 @@ import gc
 import os
 import shutil
 import signal
+import time
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -32,11 +33,17 @@ if hasattr(signal, "SIGHUP"):
 gc.disable()
 
 
+NO_TEST_BEGINS_AFTER = float(os.environ.get("NO_TEST_BEGINS_AFTER", "inf"))  # s since 1970: set by .ci/run
 LONGEST = "test_everything_about_the_paper_is_written_again"  # begun first, so that all others run beside it
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     items.sort(key=lambda item: item.name != LONGEST)
+
+
+def pytest_runtest_setup() -> None:
+    if time.time() > NO_TEST_BEGINS_AFTER:
+        pytest.skip("the time for tests is over: this machine is slow")
 
 
 def pytest_collection_finish() -> None:
