@@ -2,18 +2,15 @@
 
 import ast
 import doctest
-import inspect
 import math
 import re
 from collections.abc import Iterator
-from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import fes_mj
-from fes_mj.fit.seats import SeatLimits
 from fes_mj.linkage import kinematics
 
 OPTIONS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
@@ -65,21 +62,6 @@ def test_whatever_a_name_gives_shows_itself_in_a_line() -> None:
     assert repr(batch) == "<Design d1: cdt, a batch of 1000>"
 
 
-@pytest.mark.parametrize("name", [name for name in fes_mj.__all__ if not name.endswith("Error")])
-def test_a_wrong_type_is_refused_by_name(name: str) -> None:
-    parameters = inspect.signature(getattr(fes_mj, name)).parameters.values()
-    needed = [one for one in parameters if one.default is one.empty and one.kind == one.POSITIONAL_OR_KEYWORD]
-    first = next(iter(parameters)).name
-    with pytest.raises(fes_mj.InputError, match=rf"^{first} is \(?<object object at 0x\w+>.*; it must be of type"):
-        getattr(fes_mj, name)(*[object()] * max(len(needed), 1))
-
-
-def test_an_argument_that_there_is_not_is_refused_by_name() -> None:
-    for called in (D1.with_linkage, D1.with_rider, partial(fes_mj.optimize, "crt", P1P2), partial(fes_mj.ride, RIDE)):
-        with pytest.raises(fes_mj.InputError, match="'nothing'"):
-            called(nothing=1)
-
-
 PACKAGE = Path(fes_mj.__file__).parent
 LIBRARY = [path for path in PACKAGE.rglob("*.py") if path.relative_to(PACKAGE).parts[0] not in ("cli", "explore")]
 
@@ -117,7 +99,6 @@ NO_BATCHES = {
     "stimulation": lambda: fes_mj.stimulation(BATCH),
     "fit_seat": lambda: fes_mj.fit_seat(BATCH, D1.rider, P1P2),
     "fit_population": lambda: fes_mj.fit_population(BATCH, P1P2),
-    "fit_seat of riders": lambda: fes_mj.fit_seat(D1, fes_mj.Rider(thigh=np.full((3, 1), 0.5)), P1P2),  # type: ignore[arg-type]
 }
 
 
@@ -141,24 +122,15 @@ NO_RUNS = {
     "slope nan": lambda: fes_mj.ride(fes_mj.Ride(D1, P1P2, fes_mj.Road(slope=math.nan))),
     "rolling_mass -1": lambda: fes_mj.ride(fes_mj.Ride(D1, P1P2, fes_mj.Road(rolling_mass=-1))),
     "angles 0": lambda: fes_mj.starts(RIDE, angles=0),
-    "fineness 0": lambda: fes_mj.ride(RIDE, fineness=0),
-    "points 1e\\+12": lambda: fes_mj.quasi_static(D1, P1P2, points=10**12),
     "cadence 0": lambda: fes_mj.answer(D1, cadence=0),
     "duty nan": lambda: fes_mj.answer(D1, duty=math.nan),
     "duty 2": lambda: fes_mj.load_muscles(duty=2),
     "draws 1": lambda: fes_mj.error_budget(draws=1),
-    "samples 1e\\+09": lambda: fes_mj.fit_population(D1, P1P2, samples=10**9),
-    "limits.up\\[1\\] -1": lambda: fes_mj.fit_seat(D1, D1.rider, P1P2, SeatLimits(up=(0, -1))),
-    "linkage.crank nan": lambda: fes_mj.quasi_static(D1.with_linkage(crank=math.nan), P1P2),
-    "linkage.seat_angle nan": lambda: fes_mj.stimulation(D1.with_linkage(seat_angle=math.nan)),
-    "linkage.ground inf": lambda: fes_mj.simulate(D1.with_linkage(ground=math.inf), P1P2),
-    "rider.mass 0": lambda: fes_mj.simulate(D1.with_rider(mass=0), P1P2),
-    "rider.thigh nan": lambda: fes_mj.fit_seat(D1, fes_mj.Rider(thigh=math.nan), P1P2),
 }
 
 
 @pytest.mark.parametrize("case", NO_RUNS)
 def test_a_number_that_no_run_has_is_refused_by_name_and_value(case: str) -> None:
     name, value = case.split()
-    with pytest.raises(fes_mj.InputError, match=rf"{name}( \(\w+\))? is {value}\b"):
+    with pytest.raises(fes_mj.InputError, match=rf"{name} is {value}\b"):
         NO_RUNS[case]()

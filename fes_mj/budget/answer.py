@@ -14,7 +14,6 @@ import numpy as np
 
 from fes_mj.budget.budget import paper_powers
 from fes_mj.budget.unknowns import drawn_designs
-from fes_mj.common.arguments import checked
 from fes_mj.common.arrays import FloatArray
 from fes_mj.common.brief import Brief
 from fes_mj.common.errors import InputError
@@ -121,7 +120,6 @@ class Answer(Brief):
         }
 
 
-@checked
 def answer(
     design: Design,
     legs: Sequence[QuasiStatic] = (),

@@ -8,7 +8,6 @@ from typing import Any, ClassVar
 import mujoco
 import numpy as np
 
-from fes_mj.common.arguments import checked
 from fes_mj.common.brief import Brief
 from fes_mj.common.checks import LEAST_POWER, Check, check
 from fes_mj.common.errors import UnstableError
@@ -24,7 +23,6 @@ from fes_mj.simulation.road_control import RoadControl, road_control
 from fes_mj.simulation.road_step import finer_timestep, ride_timestep, tried_timestep
 
 
-@checked
 @dataclass(frozen=True, eq=False, repr=False)
 class RideCase(Brief):
     """A ride, computed when it is first asked for, by either solver.

@@ -6,7 +6,6 @@ from typing import Any, cast
 
 import numpy as np
 
-from fes_mj.common.arguments import checked
 from fes_mj.common.arrays import FloatArray
 from fes_mj.common.brief import Brief
 from fes_mj.common.checks import LEAST_POWER, Check, check, power_scale
@@ -28,7 +27,6 @@ from fes_mj.statics.turn import LegTurns, QuasiStatic
 INERTIA_POWER_RMS = 0.03  # W
 
 
-@checked
 @dataclass(frozen=True, eq=False, repr=False)
 class Case(Brief, Setup):
     """A setup and all that was measured of it, computed when it is first asked for, once.

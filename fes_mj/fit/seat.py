@@ -9,7 +9,6 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
-from fes_mj.common.arguments import checked
 from fes_mj.common.brief import Brief
 from fes_mj.common.errors import InputError
 from fes_mj.fit.ground import above_ground, underground
@@ -101,22 +100,19 @@ class SeatFit(Brief):
         return None
 
 
-@checked
 def fit_seat(design: Design, rider: Rider, moments: JointMoments, limits: SeatLimits = SEAT_LIMITS) -> SeatFit:
     """The best seat of a design for a rider: least outside the moments' range, then most mean power, then nearest.
 
     By seats.losses, in steps of 0.01 mm and 0.001 deg.
 
     That no seat within the limits suits is a result as well. Raises AssemblyError for a linkage that cannot turn
-    whoever sits where, InputError for a cadence that cannot be run, a rider or limits that are none, and for a batch.
+    whoever sits where, InputError for a cadence that cannot be run and for a batch.
 
     >>> rider = fes_mj.Rider(thigh=0.45, shank=0.47, mass=62, sex="female")
     >>> fes_mj.fit_seat(fes_mj.load_design("d1"), rider, fes_mj.load_moments("p1p2"))
     <SeatFit d1 p1p2: 9.6 cm towards the crank, 8.3 cm up, seat angle +3.3 deg>
     """
-    for one in (design, replace(design, rider=rider)):
-        crank_speed(one)
-    limits.require_possible()
+    crank_speed(design)
     limits = above_ground(design, limits)
     seats, _ = best_seats(design, [rider.thigh], [rider.shank], WorkTable.of(moments), limits)
     seat, why = Seats(*(float(move[0]) for move in seats)), None

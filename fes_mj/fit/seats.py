@@ -6,7 +6,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from fes_mj.common.arrays import FloatArray
-from fes_mj.common.errors import require_within
 from fes_mj.linkage.design import Design
 from fes_mj.statics.cycles import Cycles, cycles
 from fes_mj.statics.work_table import WorkTable
@@ -18,8 +17,6 @@ OUTSIDE_EQUAL, POWER_EQUAL = 0.0999, 0.0095  # deg, W
 _BACK = 0.5  # m, of a backrest: what a change of its angle counts as
 _NO_TURN = 1e4  # deg, more than joints can be outside: where the linkage does not turn
 _WORSE = 1e5  # W or deg, more than any power or angle
-
-FARTHEST = 2.0  # m and rad, that a seat moves and reclines
 
 
 class Seats(NamedTuple):
@@ -51,12 +48,6 @@ class SeatLimits(NamedTuple):
     forward: tuple[float, float] = (-0.05, 0.30)
     up: tuple[float, float] = (-0.15, 0.15)
     recline: tuple[float, float] = (-math.radians(20), math.radians(20))
-
-    def require_possible(self) -> None:
-        """Raise InputError for a range that is none: of more than FARTHEST, or empty."""
-        for name, (low, high) in self._asdict().items():
-            require_within(f"limits.{name}[0]", low, -FARTHEST, FARTHEST)
-            require_within(f"limits.{name}[1]", high, low, FARTHEST)
 
 
 SEAT_LIMITS = SeatLimits()

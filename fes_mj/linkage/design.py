@@ -13,7 +13,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fes_mj.common.arguments import batches, checked
 from fes_mj.common.brief import Brief
 from fes_mj.common.errors import InputError, require_one_of
 
@@ -65,7 +64,6 @@ ARCHITECTURES = {
 }
 
 
-@batches
 @dataclass(frozen=True)
 class Linkage:
     """Dimensions of one linkage, lengths in m and angles in rad; a TRT has no rocker, coupler or pedal arm.
@@ -127,7 +125,6 @@ class Linkage:
         return 2 * self.gear_ratio * TRICYCLE_SPEED / WHEEL_DIAMETER
 
 
-@batches
 @dataclass(frozen=True)
 class Rider:
     """Leg lengths in m, body mass in kg, and whose segment parameters apply (one of SEXES, or InputError).
@@ -167,7 +164,6 @@ class Frame:
         )
 
 
-@checked
 @dataclass(frozen=True, repr=False)
 class Design(Brief):
     """A named linkage together with the rider who sits on it; or a batch, in which any number may be an array.

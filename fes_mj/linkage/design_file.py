@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from fes_mj.common.arguments import checked
 from fes_mj.common.arrays import FloatArray
 from fes_mj.common.errors import InputError, require_one_of
 from fes_mj.common.reading import DATA, Section, is_list, is_number, read_toml
@@ -23,7 +22,6 @@ DIMENSIONS = ("identified", "printed")
 _FOLDER = DATA / "designs"
 
 
-@checked
 def load_design(source: str | Path, dims: str = "identified") -> Design:
     """A design of the paper ("trt", "r1", "r2", "d1", "d2"; dims "identified" or "printed") or a design file.
 

@@ -20,12 +20,9 @@ from fes_mj.linkage.joints import PerJoint
 Points: TypeAlias = dict[str, ComplexArray]  # point name -> positions over crank angle, m
 
 
-MOST_POINTS = 1_000_000  # of a turn: what is made of them still fits in memory
-
-
 def uniform_turn(points: int) -> FloatArray:
-    """So many crank angles over a turn, from 0, rad, shape (points,). Raises InputError for none or too many."""
-    require_within("points", points, 1, MOST_POINTS)
+    """So many crank angles over a turn, from 0, rad, shape (points,). Raises InputError for none."""
+    require_within("points", points, 1)
     return np.linspace(0.0, 2 * np.pi, points, endpoint=False)
 
 

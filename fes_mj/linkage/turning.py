@@ -21,7 +21,6 @@ from fes_mj.linkage.assembly import (
 )
 from fes_mj.linkage.design import Design
 from fes_mj.linkage.kinematics import Motion, solve
-from fes_mj.linkage.variables import require_bounds
 
 LARGEST_SWING = np.pi  # rad, of the thigh: more than any hip can do
 CRANK_ZERO = "the crank points backwards (+x)"  # where every crank angle that is printed begins
@@ -52,7 +51,6 @@ class Turning:
 
 @lru_cache(maxsize=64)
 def _established(design: Design) -> Turning:
-    require_bounds(design)
     motion = solve(design, SCAN)
     margins = clearances(design, {name: jet.value for name, jet in motion.points.items()})
     for clearance in margins:
@@ -69,8 +67,7 @@ def _established(design: Design) -> Turning:
 def turning(design: Design) -> Turning:
     """What is established of a design whose linkage turns; asked again, the same object.
 
-    Raises AssemblyError, naming links, crank angle and margin, unless it turns, and InputError for a batch and as
-    require_bounds.
+    Raises AssemblyError, naming links, crank angle and margin, unless it turns, and InputError for a batch.
     """
     design.require_single()
     return _established(design)

@@ -7,7 +7,6 @@ from pathlib import Path
 
 import numpy as np
 
-from fes_mj.common.arguments import checked
 from fes_mj.common.arrays import FloatArray
 from fes_mj.common.errors import InputError
 from fes_mj.common.reading import DATA
@@ -22,7 +21,6 @@ _FOLDER = DATA / "moments"
 CURVE_DEGREES = np.arange(360.0)  # crank angles of a rider group's curves, from top dead centre
 
 
-@checked
 def load_moments(source: str | Path = "p1p2", left: str | Path | None = None) -> JointMoments:
     """Joint moments of a rider group ("p1p2", "p1p3"; with covariance), a CSV file or a measurement file (.toml).
 

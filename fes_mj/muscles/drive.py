@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from fes_mj.common.arguments import checked
 from fes_mj.common.brief import Brief
 from fes_mj.common.errors import require_one_of
 from fes_mj.linkage.design import Design
@@ -16,7 +15,6 @@ from fes_mj.muscles.timing import DUTY, TURN_ANGLES, widths_up_to
 from fes_mj.muscles.torque import MuscleTorque
 
 
-@checked
 @dataclass(frozen=True, eq=False, repr=False)
 class Muscles(Brief):
     """An ensemble of riders and when they are stimulated; a simulation is of the most probable of them.
@@ -74,7 +72,6 @@ class Muscles(Brief):
         )
 
 
-@checked
 def load_muscles(source: str | Path = "p1p2", timing: str = BEST, duty: float = DUTY) -> Muscles:
     """Stimulated muscles of a rider group, or of an ensemble's file (.npz). Raises InputError for what is none.
 

@@ -10,7 +10,6 @@ from typing import Any, TypeAlias, Unpack
 import numpy as np
 from numpy.random import SeedSequence
 
-from fes_mj.common.arguments import checked
 from fes_mj.common.arrays import FloatArray
 from fes_mj.common.brief import Brief
 from fes_mj.common.errors import InputError, require_one_of, require_within
@@ -132,7 +131,6 @@ class Optimum(Brief):
         return self.problem.evaluate(self.x[None])
 
 
-@checked
 def optimize(
     kind: str,
     moments: JointMoments,

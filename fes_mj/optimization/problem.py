@@ -10,7 +10,6 @@ from typing import Any, TypedDict
 
 import numpy as np
 
-from fes_mj.common.arguments import checked
 from fes_mj.common.arrays import BoolArray, FloatArray
 from fes_mj.common.errors import InputError, require_one_of, require_within
 from fes_mj.common.units import RPM, turns_per_second
@@ -264,7 +263,6 @@ class ProblemOptions(TypedDict, total=False):
     muscles: MuscleDrive | None
 
 
-@checked
 def make_problem(
     kind: str,
     moments: JointMoments,

@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 
-from fes_mj.common.arguments import checked
 from fes_mj.common.arrays import BoolArray, FloatArray
 from fes_mj.common.brief import Brief
 from fes_mj.common.errors import require_extra, require_within
@@ -15,7 +14,6 @@ from fes_mj.linkage.design import TRICYCLE_SPEED
 from fes_mj.riding.ride import Ride
 from fes_mj.riding.trace import ride as solved
 
-MOST_ANGLES = 3600  # each takes several rides
 START_ANGLES = 72  # crank angles that are tried, over half a turn: the legs are alike, half a turn apart
 FASTEST_LAUNCH = 25 * KMH  # m/s
 STEEPEST = 0.3  # rise per run; the steepest streets there are have 0.35
@@ -57,7 +55,6 @@ class Starts(Brief):
         }
 
 
-@checked
 def starts(ride: Ride, angles: int = START_ANGLES) -> Starts:
     """Try rides from rest, launches and slopes. angles: crank angles that are tried, over half a turn.
 
@@ -69,7 +66,7 @@ def starts(ride: Ride, angles: int = START_ANGLES) -> Starts:
     <Starts r2 p1p2 freewheel 0 %: from rest at 50 % of the crank angles, anywhere at 1.4 km/h>
     """
     require_extra("optimize", "numba")
-    require_within("angles", angles, 1, MOST_ANGLES)
+    require_within("angles", angles, 1)
     half_turn = np.linspace(0, np.pi, angles, endpoint=False)
 
     def rides(**changes: Any) -> bool:

@@ -12,7 +12,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from fes_mj.common.arguments import checked
 from fes_mj.common.arrays import FloatArray
 from fes_mj.common.brief import Brief
 from fes_mj.common.errors import InputError
@@ -110,7 +109,6 @@ class StimulatedRider(Brief):
         return self.windows.by_group()
 
 
-@checked
 def stimulated_rider(muscles: Muscles, design: Design, cadence: float | None = None) -> StimulatedRider:
     """The most probable rider, in the windows that are best for all at a cadence in rad/s, by default the design's.
 

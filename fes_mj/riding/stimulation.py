@@ -15,7 +15,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from fes_mj.common.arguments import checked
 from fes_mj.common.arrays import FloatArray
 from fes_mj.common.brief import Brief
 from fes_mj.linkage import kinematics
@@ -94,7 +93,6 @@ class Window(Brief):
         }
 
 
-@checked
 def stimulation(design: Design, legs: int = 2) -> list[Window]:
     """Windows of every muscle group, of both legs or the right one alone; by muscle, leg, and crank angle.
 

@@ -8,15 +8,13 @@ from typing import Any
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from fes_mj.common.arguments import checked
 from fes_mj.common.arrays import BoolArray, FloatArray
 from fes_mj.common.brief import Brief
-from fes_mj.common.errors import UnstableError, require_within
+from fes_mj.common.errors import UnstableError
 from fes_mj.common.machine_code import readable
 from fes_mj.common.units import KMH, RPM
 from fes_mj.riding.ride import Ride
 
-FINEST = 64  # division of the steps
 LAST_TURNS = 5  # whole turns at the end, over which a ride is described
 # A tricycle that is no faster than this at the end, or this far back from where it had come, does not ride. Dry
 # friction stops it within a hundredth of a second of the former.
@@ -169,14 +167,13 @@ class Trace(Brief):
         }
 
 
-@checked
 def ride(ride: Ride, fineness: int = 1) -> Trace:
     """Ride without MuJoCo, by the reduced equation of motion.
 
     It ends early where nothing more can come (nothing_more). fineness: divides the steps, which leg_table chooses.
 
-    Raises InputError as Ride.require_possible and for a fineness that is none, UnstableError where the equation cannot
-    be integrated.
+    Raises InputError for a linkage that does not turn and for joints that never enter the moments' range, UnstableError
+    where the equation cannot be integrated.
 
     >>> fes_mj.ride(fes_mj.Ride(fes_mj.load_design("d1"), fes_mj.load_moments("p1p2")))
     <Trace d1 p1p2 freewheel 0 %: rides at 30.36 km/h after 60 s>
@@ -184,7 +181,6 @@ def ride(ride: Ride, fineness: int = 1) -> Trace:
     from fes_mj.riding import equation, solver  # with numba, which takes a second to import
 
     ride.require_possible()
-    require_within("fineness", fineness, 1, FINEST)
     system = readable(equation.system(ride, fineness))
     start = float(ride.start), ride.launch / ride.travel, 0.0, float(ride.launch), 0.0, 0.0, (0.0,) * 6
     state, mode, clock, until = equation.State(*start), equation.Mode(True, 0), 0.0, float(ride.duration)

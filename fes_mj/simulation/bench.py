@@ -7,7 +7,6 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from fes_mj.common.arguments import checked
 from fes_mj.common.arrays import ComplexArray, FloatArray
 from fes_mj.common.brief import Brief
 from fes_mj.common.checks import Check, check, power_scale
@@ -157,7 +156,6 @@ class BenchOptions:
 PLAIN_BENCH = BenchOptions()
 
 
-@checked
 def simulate(
     design: Design,
     drive: Drive,

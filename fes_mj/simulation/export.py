@@ -11,7 +11,6 @@ from xml.sax.saxutils import escape
 
 import numpy as np
 
-from fes_mj.common.arguments import checked
 from fes_mj.common.errors import InputError
 from fes_mj.common.reading import DATA, read_toml
 from fes_mj.common.text import printable
@@ -105,7 +104,6 @@ def sidecar_text(design: Design, drive: Drive, cadence: float | None = None, leg
 _SCENE = "scene.xml"
 
 
-@checked
 def export(
     design: Design,
     drive: Drive,

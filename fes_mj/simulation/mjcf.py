@@ -13,7 +13,6 @@ from typing import Any, Literal
 import mujoco
 import numpy as np
 
-from fes_mj.common.arguments import checked
 from fes_mj.common.errors import InputError
 from fes_mj.common.units import RPM
 from fes_mj.linkage import kinematics
@@ -92,7 +91,6 @@ class ModelOptions:
 COMPLETE, UNDRAWN = ModelOptions(), ModelOptions(drawn=False)
 
 
-@checked
 def build_mjcf(
     design: Design,
     *,

@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from fes_mj.common.arguments import checked
 from fes_mj.common.arrays import ComplexArray, FloatArray
 from fes_mj.common.brief import Brief
 from fes_mj.common.errors import InputError
@@ -183,7 +182,6 @@ def turn_points(design: Design) -> int:
     return CURVE_POINTS * math.ceil(needed / CURVE_POINTS)
 
 
-@checked
 def quasi_static(
     design: Design, moments: JointMoments, cadence: float | None = None, points: int | None = None
 ) -> QuasiStatic:

@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 
-from fes_mj.common.arguments import checked
 from fes_mj.common.brief import Brief
 from fes_mj.common.errors import InputError, require_extra
 from fes_mj.common.parallel import HERE, Workers, run_tasks
@@ -182,7 +181,6 @@ class Sweep(Brief):
         ]
 
 
-@checked
 def run_sweep(study: str | Path, folder: str | Path, workers: Workers = HERE) -> Sweep:
     r"""Evaluate every point of a study file (.toml) into a folder; what is there already is not done again.
 

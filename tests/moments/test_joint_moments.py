@@ -9,6 +9,7 @@ import pytest
 from fes_mj.common.errors import InputError
 from fes_mj.linkage.joints import JOINTS
 from fes_mj.moments.files import load_moments
+from fes_mj.moments.joint_moments import JointMoments
 
 HEADER = "crank_angle_deg,knee_Nm,hip_Nm\n"
 
@@ -81,3 +82,10 @@ def test_moments_of_unknown_error_have_no_deviations(tmp_path: Path) -> None:
     path.write_text(HEADER + "0,1,1\n120,2,2\n240,3,3\n")
     with pytest.raises(InputError, match=r"^mine: .* error"):
         _ = load_moments(path).deviations
+
+
+@pytest.mark.parametrize("name", ["crank_angle", "knee", "hip"])
+def test_numbers_that_are_not_finite_are_refused(name: str) -> None:
+    arrays = {key: np.zeros(4) for key in ("crank_angle", "knee", "hip")}
+    with pytest.raises(InputError, match=f"mine: {name} has"):
+        JointMoments("mine", **arrays | {name: np.array([0.0, np.nan, 1.0, 2.0])})

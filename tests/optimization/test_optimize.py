@@ -40,7 +40,7 @@ def test_one_call_is_the_search_of_the_problem() -> None:
     assert optimum.violations == []
     assert optimum.evaluations == 2000
     assert optimum.power == pytest.approx(fes_mj.quasi_static(optimum.design, moments).power_mean, rel=1e-4)
-    with pytest.raises(fes_mj.InputError, match="budgte"):
+    with pytest.raises(TypeError, match="budgte"):
         optimize("crt", moments, budgte=6000)
 
 
