@@ -95,6 +95,7 @@ def test_moments_that_the_server_has_forgotten(page: Page, answers: Answers, tmp
     file = tmp_path / "trial.csv"
     file.write_text(moments_csv(fes_mj.load_moments("p1p3")))
     page.after(lambda: page.page.set_input_files("#moments-file", file))
+    page.until(lambda: "…" not in page.page.inner_text("#both") + page.page.inner_text("#making"))  # all is answered
     answers.uploads.__init__()  # type: ignore[misc]
     page.set("R2", 15.5)
     assert page.page.inner_text("#message") == "trial is no longer known; open its file again"
