@@ -100,7 +100,7 @@ def test_a_cadence_for_all_points(tmp_path: Path, capsys: pytest.CaptureFixture[
     assert json.loads(capsys.readouterr().out)["power_mean_W"] == pytest.approx(best["power_mean_W"], rel=1e-4)
     path.write_text('[grid]\ndesign = ["d1"]\ncadence_rpm = [60]\n')
     assert run(command) == 2
-    assert "cadence_rpm is given here" in capsys.readouterr().err
+    assert "cadence_rpm is given here; leave out the one beside the study" in capsys.readouterr().err
 
 
 def test_the_terminal_shows_the_ten_best(study: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -47,7 +47,7 @@ def test_what_does_not_fit_into_memory_is_refused_with_a_way_out() -> None:
     assert steps_per_turn(d1, 10.0, turns=most) == FEWEST_STEPS
     with pytest.raises(fes_mj.InputError, match=f"{most + 1} x 2,880 .* {most} turns"):
         steps_per_turn(d1, 10.0, turns=most + 1)
-    with pytest.raises(fes_mj.InputError, match="time step"):
+    with pytest.raises(fes_mj.InputError, match="longer time step"):
         steps_per_turn(d1, 10.0, 1e-7)
 
 
